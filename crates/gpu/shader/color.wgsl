@@ -5,6 +5,11 @@
 // all of its vertices takes the first color that none of them has in use. So rows of one color share no vertex that moves,
 // and the colors depend on the keys alone, not on the order of the threads. In each round the smallest key of all is among
 // those that settle.
+//
+// A vertex that many rows share, as one of a coarse sheet on a fine one, settles one of them per round. Where a round settles
+// less than a 64th of those that wait, the others get no color. They are swept at once: each vertex is split into as many parts as it has of them,
+// with an equal share of its mass each, and moves by the mean of its parts (Tonge et al. 2012). So the diagonals of these rows
+// count the inverse mass of a vertex as often as it has such rows.
 
 struct Params {
     // Buckets of the dispatch.
@@ -26,9 +31,14 @@ struct Params {
 // Where each color of a bucket ends in the order, from the place where the bucket begins: it has no more colors than rows.
 @group(0) @binding(8) var<storage, read_write> color_ends: array<u32>;
 
+// One in so many rows that wait must settle in a round.
+const FEWEST_SETTLED: u32 = 64u;
+
 var<workgroup> left: atomic<u32>;
 var<workgroup> shared_first: u32;
 var<workgroup> shared_count: u32;
+// Most rows without a color of one vertex.
+var<workgroup> most: atomic<u32>;
 // Number of rows of each color and of those without one; then where the next of them goes.
 var<workgroup> places: array<atomic<u32>, 129>;
 
@@ -158,20 +168,31 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             if local.x == 0u {
                 shared_count = atomicLoad(&left);
             }
+            let before = count;
             count = workgroupUniformLoad(&shared_count);
             let swapped = here;
             here = next;
             next = swapped;
+            if FEWEST_SETTLED * (before - count) < before {
+                break;
+            }
         }
+        for (var place = local.x; place < count; place += 256u) {
+            rows[waiting[here + place]].color = COLORS;
+        }
+        storageBarrier();
+        workgroupBarrier();
         sort_by_color(bucket, first, all, local.x);
     }
 }
 
-// Their order within a color does not matter, for they share no vertex that moves; rows without a color, of which there are
-// few, come in the order of their candidates.
+// Their order within a color does not matter, nor that of rows without one.
 fn sort_by_color(bucket: u32, first: u32, all: u32, thread: u32) {
     for (var color = thread; color <= COLORS; color += 256u) {
         atomicStore(&places[color], 0u);
+    }
+    if thread == 0u {
+        atomicStore(&most, 0u);
     }
     workgroupBarrier();
     for (var place = first + thread; place < first + all; place += 256u) {
@@ -195,22 +216,66 @@ fn sort_by_color(bucket: u32, first: u32, all: u32, thread: u32) {
             color_ends[first + color] = sum;
         }
         buckets[bucket].colors = color;
+        shared_first = sum;
+        shared_count = atomicLoad(&places[COLORS]);
         atomicStore(&places[COLORS], sum);
     }
     workgroupBarrier();
     for (var place = first + thread; place < first + all; place += 256u) {
         let r = waiting[place];
-        let color = rows[r].color;
-        if color < COLORS {
-            order[atomicAdd(&places[color], 1u)] = r;
-        } else {
-            var before = 0u;
-            for (var other = first; other < first + all; other += 1u) {
-                let row = waiting[other];
-                before += u32(rows[row].color == COLORS && rows[row].candidate < rows[r].candidate);
+        order[atomicAdd(&places[rows[r].color], 1u)] = r;
+    }
+    storageBarrier();
+    workgroupBarrier();
+    let uncolored = workgroupUniformLoad(&shared_count);
+    if uncolored > 0u {
+        split_masses(workgroupUniformLoad(&shared_first), first + all, thread);
+    }
+    if thread == 0u {
+        buckets[bucket].most = atomicLoad(&most);
+    }
+    workgroupBarrier();
+}
+
+// Whether vertex k of a row takes part in it; unused ones have no weight.
+fn has_part(r: u32, k: u32) -> bool {
+    return moves(rows[r].vertices[k]) && rows[r].weights[k] != 0.0;
+}
+
+// The diagonals of the rows without a color.
+fn split_masses(first: u32, end: u32, thread: u32) {
+    for (var place = first + thread; place < end; place += 256u) {
+        let r = order[place];
+        for (var k = 0u; k < 4u; k += 1u) {
+            if has_part(r, k) {
+                atomicStore(&claims[rows[r].vertices[k]], 0u);
             }
-            order[atomicLoad(&places[COLORS]) + before] = r;
         }
+    }
+    storageBarrier();
+    workgroupBarrier();
+    for (var place = first + thread; place < end; place += 256u) {
+        let r = order[place];
+        for (var k = 0u; k < 4u; k += 1u) {
+            if has_part(r, k) {
+                atomicAdd(&claims[rows[r].vertices[k]], 1u);
+            }
+        }
+    }
+    storageBarrier();
+    workgroupBarrier();
+    for (var place = first + thread; place < end; place += 256u) {
+        let r = order[place];
+        var diagonal = 0.0;
+        for (var k = 0u; k < 4u; k += 1u) {
+            if has_part(r, k) {
+                let v = rows[r].vertices[k];
+                let parts = atomicLoad(&claims[v]);
+                atomicMax(&most, parts);
+                diagonal += f32(parts) * displacements[v].w * rows[r].weights[k] * rows[r].weights[k];
+            }
+        }
+        rows[r].inverse_diagonal = select(0.0, 1.0 / diagonal, diagonal > 0.0);
     }
     workgroupBarrier();
 }

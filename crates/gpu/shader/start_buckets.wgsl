@@ -21,7 +21,7 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
     var start = sum_before(local.x, own);
     for (var bucket = first; bucket < last; bucket += 1u) {
         let end = start + tally[bucket];
-        buckets[bucket] = Bucket(start, end, 0u);
+        buckets[bucket] = Bucket(start, end, 0u, 0u);
         start = end;
     }
 }

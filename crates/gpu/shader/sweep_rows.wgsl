@@ -1,6 +1,9 @@
 // Sweeps over the contact rows of some buckets, which share no vertex that moves (bricks.rs). A workgroup takes a bucket at
-// a time, goes over it as often as it is told, and waits between its colors: rows of one color share no vertex that moves. The rows without a color of their
-// own come last, one after the other. Vertices that do not move are read by many and written by none.
+// a time, goes over it as often as it is told, and waits between its colors: rows of one color share no vertex that moves.
+// Vertices that do not move are read by many and written by none.
+//
+// The rows without a color come last, all at once, with masses that are split (color.wgsl). What they move a vertex by is added as
+// integers, in a unit that has room for all of them, so that the sums do not depend on their order.
 //
 // Most buckets have no more rows than a workgroup has threads. Each thread then keeps a row, and the workgroup the
 // displacements of all vertices in its own memory, in the slots of a hash table: between colors nothing is read from the
@@ -26,6 +29,8 @@ struct Params {
 @group(0) @binding(3) var<storage, read> color_ends: array<u32>;
 @group(0) @binding(4) var<storage, read_write> rows: array<Row>;
 @group(0) @binding(5) var<storage, read_write> displacements: array<vec4<f32>>;
+// By how much rows without a color move each vertex, and whether any does; zeros between two uses.
+@group(0) @binding(6) var<storage, read_write> pushes: array<atomic<i32>>;
 
 const THREADS: u32 = 256u;
 const SLOTS: u32 = 512u;
@@ -40,6 +45,9 @@ var<workgroup> is_full: u32;
 // Whether a row of the bucket changes, likewise.
 var<workgroup> changes: atomic<u32>;
 var<workgroup> is_changing: u32;
+// Bits of the largest component by which a row without a color moves a vertex, likewise.
+var<workgroup> largest: atomic<u32>;
+var<workgroup> largest_of_all: u32;
 
 // The row that is relaxed. In place of vertices it has slots if `is_kept` is true.
 var<private> row: Row;
@@ -143,6 +151,86 @@ fn relax_there(r: u32) {
     row = rows[r];
     relax();
     store(r);
+}
+
+// Relaxes the row with all other vertices where they are, and returns what it pushes its vertices by.
+fn relax_alone() -> vec3<f32> {
+    if row.inverse_diagonal == 0.0 {
+        return vec3<f32>(0.0);
+    }
+    if params.only_apply != 0u {
+        return row.normal * row.multiplier + row.friction;
+    }
+    let multiplier = pressed();
+    let friction = rubbed(multiplier);
+    let change = row.normal * (multiplier - row.multiplier) + (friction - row.friction);
+    row.multiplier = multiplier;
+    row.friction = friction;
+    return change;
+}
+
+// Relaxes the rows of a bucket from a place on, all at once. All threads call it.
+fn relax_together(first: u32, bucket: Bucket, thread: u32) {
+    if thread == 0u {
+        atomicStore(&largest, 0u);
+    }
+    workgroupBarrier();
+    var own = 0.0;
+    for (var there = first + thread; there < bucket.end; there += THREADS) {
+        row = rows[order[there]];
+        let change = abs(relax_alone());
+        for (var k = 0u; k < 4u; k += 1u) {
+            let share = abs(displacements[row.vertices[k]].w * row.weights[k]);
+            own = max(own, share * max(change.x, max(change.y, change.z)));
+        }
+    }
+    atomicMax(&largest, bitcast<u32>(own));
+    workgroupBarrier();
+    if thread == 0u {
+        largest_of_all = atomicLoad(&largest);
+    }
+    let bits = bitcast<u32>(bitcast<f32>(workgroupUniformLoad(&largest_of_all)) * f32(bucket.most));
+    // Nothing moves, or what moves is no number.
+    if bits == 0u || bits >= 0x7f000000u {
+        return;
+    }
+    // A sum is below 2^30 units.
+    let exponent = max((bits >> 23u) + 1u, 31u) - 30u;
+    let unit = bitcast<f32>(exponent << 23u);
+    let inverse = bitcast<f32>((254u - exponent) << 23u);
+    for (var there = first + thread; there < bucket.end; there += THREADS) {
+        let r = order[there];
+        row = rows[r];
+        let change = relax_alone() * inverse;
+        for (var k = 0u; k < 4u; k += 1u) {
+            let v = row.vertices[k];
+            let share = displacements[v].w * row.weights[k];
+            if share != 0.0 {
+                let push = vec3<i32>(round(share * change));
+                for (var c = 0u; c < 3u; c += 1u) {
+                    atomicAdd(&pushes[4u * v + c], push[c]);
+                }
+                atomicStore(&pushes[4u * v + 3u], 1i);
+            }
+        }
+        store(r);
+    }
+    storageBarrier();
+    workgroupBarrier();
+    for (var there = first + thread; there < bucket.end; there += THREADS) {
+        let vertices = rows[order[there]].vertices;
+        for (var k = 0u; k < 4u; k += 1u) {
+            let v = vertices[k];
+            // One thread has the vertex.
+            if atomicExchange(&pushes[4u * v + 3u], 0i) != 0i {
+                var push = vec3<f32>(0.0);
+                for (var c = 0u; c < 3u; c += 1u) {
+                    push[c] = f32(atomicExchange(&pushes[4u * v + c], 0i));
+                }
+                displacements[v] = vec4<f32>(displacements[v].xyz + push * unit, displacements[v].w);
+            }
+        }
+    }
 }
 
 // The slot of a vertex, which takes the first free one from its hash on; SLOTS if all are taken.
@@ -249,10 +337,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
                 storageBarrier();
                 workgroupBarrier();
             }
-            if !is_kept && local.x == 0u {
-                for (var there = start; there < bucket.end; there += 1u) {
-                    relax_there(order[there]);
-                }
+            if colored_end < bucket.end {
+                relax_together(colored_end, bucket, local.x);
             }
             storageBarrier();
             workgroupBarrier();

@@ -265,6 +265,8 @@ pub struct Bucket {
     pub end: u32,
     /// How many colors they have.
     pub colors: u32,
+    /// Most rows without a color of one vertex.
+    pub most: u32,
 }
 
 /// Successive edges that a workgroup sweeps in its own memory.

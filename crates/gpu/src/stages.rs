@@ -245,7 +245,7 @@ pub(crate) static SWEEP_ROWS: Stage = Stage {
     name: "sweep_rows",
     parts: &[TYPES, include_str!("../shader/sweep_rows.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Write, Write, Write],
     twin: cpu::sweep_rows::bound,
 };
 

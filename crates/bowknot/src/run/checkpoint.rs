@@ -428,9 +428,6 @@ mod tests {
             let present: Array1<bool> = old.by_name("present").expect("an array");
             archive.add_array("present", &present)?;
             let sum: Array1<u8> = old.by_name(CHECKSUM).expect("an array");
-            if !self.order.is_empty() {
-                archive.add_array(ORDER, &points(&self.order))?;
-            }
             archive.add_array(CHECKSUM, &sum)?;
             archive.add_array("step", &Array1::from_elem(1, other.step as u64))
         })

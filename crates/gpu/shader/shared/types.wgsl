@@ -104,13 +104,15 @@ struct Row {
     bucket: u32,
 }
 
-// Colors of rows; rows that get none of them are swept one by one.
+// Colors of rows; rows that get none of them are swept at once, and share the masses of their vertices.
 const COLORS: u32 = 128u;
 
 struct Bucket {
     first: u32,
     end: u32,
     colors: u32,
+    // Most rows without a color of one vertex.
+    most: u32,
 }
 
 struct EdgeCluster {

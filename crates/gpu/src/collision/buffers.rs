@@ -92,6 +92,8 @@ pub struct Buffers {
     pub cluster_colors: BufferId,
     pub proximal: BufferId,
     pub displacements: BufferId,
+    /// What rows without a color move each vertex by; zeros between two uses.
+    pub pushes: BufferId,
     /// Displacement of the last step, and the factor on the proximal weight.
     pub swings: BufferId,
     /// How the prescribed vertices get on.
@@ -189,6 +191,7 @@ impl Buffers {
             proximal: engine.buffer("proximal weights", vertices)?,
             swings: engine.buffer("swings", 4 * vertices)?,
             displacements: engine.buffer("displacements", 4 * vertices)?,
+            pushes: engine.buffer("pushes", 4 * vertices)?,
             late: engine.buffer("progress", words::<Late>(vertices))?,
             aims: engine.buffer("aims", 4 * vertices)?,
             slack: engine.buffer("slack", 2 * MOST_BLOCKS)?,

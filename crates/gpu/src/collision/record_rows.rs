@@ -192,7 +192,7 @@ impl<E: Engine> Collision<E> {
         for round in self.bricks.rounds() {
             recording.dispatch(
                 &stages::SWEEP_ROWS,
-                &[r.order, r.buckets, r.color_ends, r.rows, b.displacements],
+                &[r.order, r.buckets, r.color_ends, r.rows, b.displacements, b.pushes],
                 cpu::sweep_rows::Params {
                     first: round.start,
                     end: round.end,

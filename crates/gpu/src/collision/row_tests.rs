@@ -115,6 +115,13 @@ impl Rows {
         (colors, &self.order[start..bucket.end as usize])
     }
 
+    /// Vertices that a row moves.
+    fn parts<'a>(&'a self, scene: &'a Scene, row: u32) -> impl Iterator<Item = u32> {
+        let row = &self.rows[row as usize];
+        let all = row.vertices.into_iter().zip(row.weights);
+        all.filter(|(v, weight)| *weight != 0.0 && !scene.prescribed[*v as usize]).map(|(v, _)| v)
+    }
+
     fn moving<'a>(&'a self, scene: &'a Scene, row: u32) -> HashSet<u32> {
         let vertices = self.rows[row as usize].vertices.into_iter();
         vertices.filter(|v| !scene.prescribed[*v as usize]).collect()
@@ -150,8 +157,13 @@ fn rows_that_are_swept_at_the_same_time_share_no_vertex_that_moves() {
                         assert!(all.moving(&scene, row).into_iter().all(|v| vertices.insert(v)), "{found:?}");
                     }
                 }
-                let candidate = |row: &u32| all.rows[*row as usize].candidate;
-                assert!(others.is_sorted_by_key(candidate));
+                let mut parts: HashMap<u32, u32> = HashMap::new();
+                for &row in others {
+                    for v in all.parts(&scene, row) {
+                        *parts.entry(v).or_default() += 1;
+                    }
+                }
+                assert_eq!(bucket.most, parts.values().copied().max().unwrap_or(0));
                 assert!(others.iter().all(|row| all.rows[*row as usize].color as usize == COLORS));
                 uncolored += others.len();
                 for &row in &all.order[bucket.first as usize..bucket.end as usize] {

@@ -3,6 +3,7 @@
 use crate::bound::Bound;
 use crate::layout::{Bucket, COLORS, NONE, Row};
 use bytemuck::{Pod, Zeroable};
+use std::ops::Range;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -25,6 +26,8 @@ pub fn bound(buffers: Bound<'_>) {
         &mut buffers.write(7),
     );
 }
+
+const FEWEST_SETTLED: usize = 64;
 
 fn key_of(candidate: u32) -> u32 {
     candidate.wrapping_mul(0x9e37_79b1)
@@ -84,20 +87,27 @@ pub fn color(
                     moving(row).for_each(|v| in_use[v][color / 32] |= 1 << (color % 32));
                 }
             }
+            let before = count;
             (here, next, count) = (next, here, left);
             round += 1;
+            if FEWEST_SETTLED * (before - count) < before {
+                break;
+            }
         }
-        sort_by_color(bucket, rows, waiting, order, color_ends);
+        waiting[here..here + count].iter().for_each(|r| rows[*r as usize].color = COLORS as u32);
+        let uncolored = sort_by_color(bucket, rows, waiting, order, color_ends);
+        bucket.most = split_masses(&order[uncolored], displacements, rows, claims);
     }
 }
 
+/// Returns the places of the rows without a color.
 fn sort_by_color(
     bucket: &mut Bucket,
     rows: &[Row],
     waiting: &mut [u32],
     order: &mut [u32],
     color_ends: &mut [u32],
-) {
+) -> Range<usize> {
     let [first, end] = [bucket.first, bucket.end].map(|place| place as usize);
     let mut places = [0; COLORS + 1];
     waiting[first..end].copy_from_slice(&order[first..end]);
@@ -111,18 +121,35 @@ fn sort_by_color(
     }
     bucket.colors = color as u32;
     places[COLORS] = sum;
-    for place in first..end {
-        let r = waiting[place];
-        let Row { color, candidate, .. } = rows[r as usize];
-        if (color as usize) < COLORS {
-            order[places[color as usize]] = r;
-            places[color as usize] += 1;
-        } else {
-            let is_before = |other: &&u32| {
-                let other = &rows[**other as usize];
-                other.color as usize == COLORS && other.candidate < candidate
-            };
-            order[places[COLORS] + waiting[first..end].iter().filter(is_before).count()] = r;
-        }
+    for &r in &waiting[first..end] {
+        let place = &mut places[rows[r as usize].color as usize];
+        order[*place] = r;
+        *place += 1;
     }
+    sum..end
+}
+
+/// The diagonals of the rows without a color. Returns how many of them a vertex has at most.
+fn split_masses(uncolored: &[u32], displacements: &[[f32; 4]], rows: &mut [Row], claims: &mut [u32]) -> u32 {
+    let parts = |row: &Row| {
+        let all = row.vertices.map(|v| v as usize).into_iter().zip(row.weights);
+        all.filter(|(v, weight)| displacements[*v][3] > 0.0 && *weight != 0.0)
+    };
+    for &r in uncolored {
+        parts(&rows[r as usize]).for_each(|(v, _)| claims[v] = 0);
+    }
+    for &r in uncolored {
+        parts(&rows[r as usize]).for_each(|(v, _)| claims[v] += 1);
+    }
+    let mut most = 0;
+    for &r in uncolored {
+        let row = &mut rows[r as usize];
+        let mut diagonal = 0.0;
+        for (v, weight) in parts(row) {
+            most = most.max(claims[v]);
+            diagonal += claims[v] as f32 * displacements[v][3] * weight * weight;
+        }
+        row.inverse_diagonal = if diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
+    }
+    most
 }

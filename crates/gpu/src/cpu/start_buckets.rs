@@ -17,7 +17,7 @@ pub fn bound(buffers: Bound<'_>) {
 pub fn start_buckets(params: Params, tally: &[u32], buckets: &mut [Bucket]) {
     let mut total = 0;
     for (bucket, count) in buckets.iter_mut().zip(tally).take(params.buckets as usize) {
-        *bucket = Bucket { first: total, end: total + count, colors: 0 };
+        *bucket = Bucket { first: total, end: total + count, colors: 0, most: 0 };
         total += count;
     }
 }

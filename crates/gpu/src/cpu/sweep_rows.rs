@@ -1,6 +1,6 @@
 //! Twin of `shader/sweep_rows.wgsl`.
 
-use super::{added, dot, scaled, subtracted};
+use super::{added, dot, largest, scaled, subtracted};
 use crate::bound::Bound;
 use crate::layout::{Bucket, Row};
 use bytemuck::{Pod, Zeroable};
@@ -22,6 +22,7 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(2),
         &mut buffers.write(3),
         &mut buffers.write(4),
+        &mut buffers.write(5),
     );
 }
 
@@ -29,9 +30,10 @@ pub fn sweep_rows(
     params: Params,
     order: &[u32],
     buckets: &[Bucket],
-    _color_ends: &[u32],
+    color_ends: &[u32],
     rows: &mut [Row],
     displacements: &mut [[f32; 4]],
+    pushes: &mut [[i32; 4]],
 ) {
     // Colors are sorted, and only threads wait between them.
     for bucket in &buckets[params.first as usize..params.end as usize] {
@@ -39,10 +41,14 @@ pub fn sweep_rows(
         if !own.iter().any(|r| would_change(params, &rows[*r as usize], displacements)) {
             continue;
         }
+        let last_color = (bucket.first + bucket.colors).checked_sub(1).filter(|_| bucket.colors > 0);
+        let end = last_color.map_or(bucket.first, |place| color_ends[place as usize]);
+        let (colored, uncolored) = own.split_at((end - bucket.first) as usize);
         for _ in 0..params.sweeps {
-            for &r in own {
+            for &r in colored {
                 relax(params, &mut rows[r as usize], displacements);
             }
+            relax_together(params, bucket, uncolored, rows, displacements, pushes);
         }
     }
 }
@@ -92,6 +98,61 @@ fn relax(params: Params, row: &mut Row, displacements: &mut [[f32; 4]]) {
     if friction != row.friction {
         push(row, subtracted(friction, row.friction), displacements);
         row.friction = friction;
+    }
+}
+
+/// Relaxes a row with all other vertices where they are, and returns what it pushes its vertices by.
+fn relax_alone(params: Params, row: &mut Row, displacements: &[[f32; 4]]) -> [f32; 3] {
+    if row.inverse_diagonal == 0.0 {
+        return [0.0; 3];
+    }
+    if params.only_apply != 0 {
+        return added(scaled(row.normal, row.multiplier), row.friction);
+    }
+    let multiplier = pressed(row, displacements);
+    let friction = rubbed(row, multiplier, displacements);
+    let change = added(scaled(row.normal, multiplier - row.multiplier), subtracted(friction, row.friction));
+    (row.multiplier, row.friction) = (multiplier, friction);
+    change
+}
+
+fn relax_together(
+    params: Params,
+    bucket: &Bucket,
+    uncolored: &[u32],
+    rows: &mut [Row],
+    displacements: &mut [[f32; 4]],
+    pushes: &mut [[i32; 4]],
+) {
+    let mut most = 0.0f32;
+    for &r in uncolored {
+        let mut row = rows[r as usize];
+        let change = largest(relax_alone(params, &mut row, displacements));
+        for (v, weight) in row.vertices.into_iter().zip(row.weights) {
+            most = most.max((displacements[v as usize][3] * weight).abs() * change);
+        }
+    }
+    let bits = (most * bucket.most as f32).to_bits();
+    if bits == 0 || bits >= 0x7f00_0000 {
+        return;
+    }
+    let exponent = ((bits >> 23) + 1).max(31) - 30;
+    let [unit, inverse] = [exponent, 254 - exponent].map(|exponent| f32::from_bits(exponent << 23));
+    for &r in uncolored {
+        let row = &mut rows[r as usize];
+        let change = scaled(relax_alone(params, row, displacements), inverse);
+        for (v, weight) in row.vertices.map(|v| v as usize).into_iter().zip(row.weights) {
+            let share = displacements[v][3] * weight;
+            for k in 0..3 {
+                pushes[v][k] = pushes[v][k].wrapping_add((share * change[k]).round_ties_even() as i32);
+            }
+        }
+    }
+    for v in uncolored.iter().flat_map(|r| rows[*r as usize].vertices).map(|v| v as usize) {
+        let [x, y, z, weight] = displacements[v];
+        let push = std::mem::take(&mut pushes[v]);
+        let [x, y, z] = added([x, y, z], scaled([push[0], push[1], push[2]].map(|push| push as f32), unit));
+        displacements[v] = [x, y, z, weight];
     }
 }
 
