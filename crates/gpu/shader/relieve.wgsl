@@ -1,7 +1,6 @@
-// Rows ask free vertices only for the distance in their own places. Where prescribed vertices end nearer than desired, the
-// free vertices of their side would have to make up for it. With a closest point near a prescribed vertex they have a short
-// lever, and would have to go far. So what prescribed vertices lack is not asked for. It runs after release.wgsl, which
-// says where prescribed vertices go.
+// Subtracts from a row's target distance what its prescribed vertices lack. Where they end nearer than desired, the free
+// vertices of their side would have to make up for it. With a closest point near a prescribed vertex they have a short
+// lever, and would have to go far. It runs after release.wgsl, which says where prescribed vertices go.
 //
 // Rounding. The lever can be as short as rounding makes a weight that should be 0, and a row that is off by a part of a
 // quantum then throws its free vertices. So a row asks for less by what rounding can do to it: with u = 2^-24 and the

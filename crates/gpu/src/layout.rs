@@ -57,7 +57,7 @@ impl Vertex {
     pub const KNOWN: u32 = 8;
 }
 
-/// A trust region: no pair that is searched for outside of it is found.
+/// A trust region: the list of candidates is complete inside of it only.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 pub struct Ball {
@@ -65,7 +65,7 @@ pub struct Ball {
     pub radius: i32,
 }
 
-/// How a prescribed vertex gets on in a call.
+/// The progress of a prescribed vertex in a call.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Late {

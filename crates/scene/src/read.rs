@@ -162,7 +162,7 @@ fn body(reader: &mut Reader<'_>, table: &Table, path: &str, index: usize) -> Bod
         body.name = format!("body{index}");
     }
     body.shape = shape(reader, table, path);
-    // Of what an unknown kind is made nobody knows.
+    // No material can be read for an unknown kind.
     if table.get("kind").is_none_or(|kind| kind.as_str() == Some(body.kind.name())) {
         body.material = material::read(reader, table, path, body.kind);
     }

@@ -1,9 +1,10 @@
-//! Prescribed vertices that do not get on because pairs hold them back.
+//! Prescribed vertices that make no progress because pairs hold them back.
 //!
 //! The rows of the backward step take prescribed vertices to be at their targets. Where one cannot get there, rows of
 //! contacts and of edges contradict each other: cloth is to follow its pins into an obstacle. No target then satisfies
 //! all rows, and multipliers grow from step to step. So after some steps without progress the rows take such a vertex to
-//! be where it is. The forward step goes on to move it toward its target; as soon as it gets on, the rows believe it.
+//! be where it is. The forward step still moves it toward its target; as soon as it makes progress, rows use its target
+//! again.
 
 use crate::index_set::IndexSet;
 use crate::scene::CollisionScene;

@@ -199,7 +199,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let mut cpu = Cpu { scene, state, search, backward, forward, report: StepReport::default() };
         call.run(&mut cpu, observer, &mut statistics)?;
 
-        // A call that the caller wants cut short is not slow.
+        // A step limit set by the caller does not make a call slow.
         let is_cut = input.max_steps.is_some_and(|most| statistics.steps >= most);
         if statistics.steps >= SLOW_STEPS || (!statistics.converged && !is_cut && statistics.steps > 0) {
             statistics.waits = self.forward.waits(&self.scene, &self.state);

@@ -152,11 +152,11 @@ impl<'a> Rule<'a> {
         desired.map(|desired| self.within_reach(kind, &pair.vertices, separation, desired))
     }
 
-    /// The part of a desired distance [m] that the movable vertices of a pair can answer for.
+    /// The desired distance [m] without the deficit of prescribed vertices.
     ///
     /// Where prescribed vertices end nearer than desired, the other vertices of their side would have to make up for it.
-    /// With a closest point near a prescribed vertex they have a short lever, and would have to go far. So they are asked
-    /// for no more than the distance in their own places: what prescribed vertices lack is not asked for.
+    /// With a closest point near a prescribed vertex they have a short lever, and would have to go far. So the deficit of
+    /// the prescribed vertices is subtracted from the desired distance.
     fn within_reach(
         &self,
         kind: PairKind,

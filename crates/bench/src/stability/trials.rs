@@ -49,7 +49,7 @@ fn stack(steps: usize, sleep: bool) -> Case {
     Case::new(sweep, format!("{steps} steps"), scene, steps)
 }
 
-/// A plate comes down on a soft block until `gap` is left of its height of 0.12 m; with a gap of 0 nothing fits.
+/// A plate comes down on a soft block until `gap` is left of its height of 0.12 m; with a gap of 0 there is no room for it.
 fn press(steps: usize, gap: f64) -> Case {
     let setting = Setting::default();
     let time = 0.5 * steps as f64 * setting.dt;

@@ -1,4 +1,4 @@
-//! Judges what a device computes, on the CPU: a driver that computes something else than it should is told, not trusted.
+//! Judges what a device computes, on the CPU: a faulty driver causes an error, never an intersecting state.
 
 use super::error::GpuResolveError;
 use bowknot_check::{Judge, MotionJudge, StateOptions};

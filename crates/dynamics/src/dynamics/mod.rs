@@ -131,9 +131,9 @@ impl Dynamics {
         &self.params
     }
 
-    /// Lets a backend do Newton iterations from the next target on; None for the CPU, as at first. Where single precision
-    /// gains nothing, the CPU does the rest of a time step. The residuals of time steps are measured by the
-    /// preconditioner of the backend.
+    /// Sets the backend of Newton iterations. Takes effect at the next target; None, the default, is the CPU. Where
+    /// single precision gains nothing, the CPU does the rest of a time step. The residuals of time steps are measured by
+    /// the preconditioner of the backend.
     ///
     /// # Errors
     /// [`StepError::QuadraticElements`] if a body has them: the CPU then computes the dynamics.

@@ -96,7 +96,7 @@ pub struct Buffers {
     pub pushes: BufferId,
     /// Displacement of the last step, and the factor on the proximal weight.
     pub swings: BufferId,
-    /// How the prescribed vertices get on.
+    /// Progress of the prescribed vertices.
     pub late: BufferId,
     /// Where the vertices go in this step.
     pub aims: BufferId,

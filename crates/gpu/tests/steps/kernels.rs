@@ -156,7 +156,7 @@ fn two_runs_on_one_device_have_the_same_bits() {
 }
 
 /// Pins among free vertices, all over two sheets that are folded through everything: every kernel does what its twin does,
-/// also while some of the pins do not get on.
+/// also while some of the pins make no progress.
 #[test]
 fn kernels_and_twins_agree_on_rows_with_pins() {
     let scene = scene();
