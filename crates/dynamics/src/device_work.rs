@@ -13,6 +13,8 @@ pub struct DeviceWork {
     pub waits: usize,
     /// Buffers that were made.
     pub buffers: usize,
+    /// Time steps that the CPU finished because single precision was not enough.
+    pub departures: usize,
     /// Seconds in which the host recorded and submitted.
     pub encode_s: f64,
     /// Seconds in which the host waited.
@@ -37,6 +39,7 @@ impl Add for DeviceWork {
             dispatches: self.dispatches + other.dispatches,
             waits: self.waits + other.waits,
             buffers: self.buffers + other.buffers,
+            departures: self.departures + other.departures,
             encode_s: self.encode_s + other.encode_s,
             wait_s: self.wait_s + other.wait_s,
         }
@@ -53,6 +56,7 @@ impl Sub for DeviceWork {
             dispatches: self.dispatches.saturating_sub(earlier.dispatches),
             waits: self.waits.saturating_sub(earlier.waits),
             buffers: self.buffers.saturating_sub(earlier.buffers),
+            departures: self.departures.saturating_sub(earlier.departures),
             encode_s: (self.encode_s - earlier.encode_s).max(0.0),
             wait_s: (self.wait_s - earlier.wait_s).max(0.0),
         }

@@ -357,7 +357,8 @@ impl Simulator {
         let awake = self.rest.as_ref().and_then(Rest::awake_dynamics);
         let dynamics = awake.unwrap_or(&self.dynamics);
         let of_dynamics = dynamics.backend().map(NewtonBackend::work);
-        self.backend.work() + of_dynamics.unwrap_or_default()
+        let departures = dynamics.departures();
+        self.backend.work() + DeviceWork { departures, ..of_dynamics.unwrap_or_default() }
     }
 
     /// Closes the statistics of a time step that began at `timer` and `cpu_start` [s].

@@ -186,6 +186,8 @@ pub struct DeviceCounts {
     pub waits: usize,
     /// Buffers that were made.
     pub buffers: usize,
+    /// Whether the CPU finished the time step, because single precision was not enough: 1, else 0.
+    pub departures: usize,
 }
 
 /// Seconds of the host beside a device.
@@ -200,9 +202,9 @@ pub struct HostSeconds {
 impl StepStatistics {
     /// Sets what devices were asked for; nothing if there is none.
     pub(super) fn set_device_work(&mut self, work: &DeviceWork) {
-        let DeviceWork { submissions, dispatches, waits, buffers, encode_s, wait_s } = *work;
+        let DeviceWork { submissions, dispatches, waits, buffers, departures, encode_s, wait_s } = *work;
         if dispatches > 0 {
-            self.device = Some(DeviceCounts { submissions, dispatches, waits, buffers });
+            self.device = Some(DeviceCounts { submissions, dispatches, waits, buffers, departures });
             self.seconds.host = Some(HostSeconds { encode: encode_s, wait: wait_s });
         }
     }

@@ -76,6 +76,8 @@ pub struct Dynamics {
     work: Workspace,
     /// What does Newton iterations in place of the CPU.
     device: Option<Device>,
+    /// See [`Self::departures`].
+    departures: usize,
 }
 
 impl Dynamics {
@@ -118,6 +120,7 @@ impl Dynamics {
             course,
             work,
             device: None,
+            departures: 0,
         })
     }
 
@@ -251,6 +254,11 @@ impl Dynamics {
         Ok(residual)
     }
 
+    /// How many time steps the CPU has finished because single precision was not enough on a device.
+    pub fn departures(&self) -> usize {
+        self.departures
+    }
+
     /// The [`Residual::distance`] of each connected component in the last call of [`Self::residual`], in the order of
     /// [`DynamicsModel::components_of_vertices`] [m].
     pub fn component_distances(&self) -> &[f64] {
@@ -278,7 +286,7 @@ impl Dynamics {
         sets_trial: bool,
         run: &impl Fn(&mut Newton<'_>) -> Answer<T>,
     ) -> Result<T, StepError> {
-        let Self { model, params, repulsion, course, work, device, .. } = self;
+        let Self { model, params, repulsion, course, work, device, departures, .. } = self;
         let (dt, is_first) = (step.dt, step.last_target.is_none());
         let (watched, free) = (repulsion.watched().to_vec(), work.free.clone());
         let mut over = |bodies: &mut dyn Bodies, course: &mut Course| {
@@ -306,7 +314,13 @@ impl Dynamics {
                     if let Lost::Failed(error) = lost {
                         return Err(failed(&error));
                     }
-                    tracing::debug!("single precision is not enough for the rest of a time step");
+                    if *departures == 0 {
+                        tracing::warn!(
+                            "the CPU finishes a time step whose linear solves need more than single precision; \
+                             `device.departures` in stats.jsonl counts them"
+                        );
+                    }
+                    *departures += 1;
                     course.unprepared = true;
                 }
             }
