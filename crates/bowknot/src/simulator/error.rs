@@ -1,6 +1,7 @@
 //! Why a simulation cannot begin or go on.
 
-use super::waits::element_words;
+use super::backend::BackendError;
+use super::report::element_words;
 use bowknot_check::{CheckError, Intersection};
 use bowknot_dynamics::{Errors, ParamError, StepError};
 use bowknot_errors::counted;
@@ -114,6 +115,24 @@ impl SimulationError {
         match source {
             StepError::LinearBackend { .. } => Self::Backend { step, source: Box::new(source) },
             source => Self::Target { step, source },
+        }
+    }
+
+    /// A collision problem that is refused, with the name of its body.
+    pub(super) fn resolve(world: &World, step: usize, source: ResolveError) -> Self {
+        let body = match &source {
+            ResolveError::NonFinite { body, .. } | ResolveError::Mass { body, .. } => world.name_of(*body),
+            ResolveError::MinSeparationBelowRounding { vertex, .. } => world.body_name(*vertex),
+            _ => "",
+        };
+        Self::Resolve { step, body: body.to_owned(), source }
+    }
+
+    /// A collision problem that a backend did not resolve.
+    pub(super) fn backend(world: &World, step: usize, source: BackendError) -> Self {
+        match source {
+            BackendError::Refused(source) => Self::resolve(world, step, source),
+            BackendError::Failed(source) => Self::Backend { step, source },
         }
     }
 }

@@ -37,9 +37,9 @@ impl Finished {
         self.held.clone_from(&self.prescribed);
     }
 
-    /// Notes which groups are finished, by the `residuals` of connected components [m], where `springs` may act. A component goes
+    /// Updates which groups are finished, by the `residuals` of connected components [m], where `springs` may act. A component goes
     /// on if not all of its vertices are `counted`: what rows alone hold has no residual.
-    pub fn note(
+    pub fn update(
         &mut self,
         model: &DynamicsModel,
         residuals: &[f64],
@@ -130,7 +130,7 @@ mod tests {
         };
         let mut finished = Finished::default();
         finished.begin(&[true, false, false, false, false, false, false, false, false]);
-        finished.note(&model, &by_component, &counted, &[spring], Tolerance::new(1.0, 0.01));
+        finished.update(&model, &by_component, &counted, &[spring], Tolerance::new(1.0, 0.01));
         finished.held().to_vec()
     }
 

@@ -1,13 +1,11 @@
 //! What a simulation shows of a time step while it makes it.
 
-use super::waits::WaitingElements;
+use super::blocking::WaitingElements;
 use bowknot_dynamics::Residual;
 use bowknot_geometry::Point;
 use bowknot_scene::world::World;
-#[cfg(doc)]
-use bowknot_twoway::ResolveInput;
 use bowknot_twoway::lcp::DistanceLimit;
-use bowknot_twoway::{AcceptedState, Observer, PairMultipliers, Wait};
+use bowknot_twoway::{AcceptedState, Observer, PairMultipliers, ResolveInput, Wait};
 use std::ops::ControlFlow;
 
 /// A collision problem on its way to the two-way method. Slices have one entry per vertex that collides.
@@ -35,6 +33,32 @@ pub struct CollisionProblem<'a> {
     pub carried: &'a [PairMultipliers],
     /// Edges with other limits than by the scene [m], see [`ResolveInput::yielding`].
     pub yielding: &'a [DistanceLimit],
+}
+
+impl<'a> CollisionProblem<'a> {
+    /// That of a call with the `input`, in a time step and an iteration.
+    pub(crate) fn new(
+        [step, iteration]: [usize; 2],
+        positions: &'a [Point],
+        target: &'a [Point],
+        input: &ResolveInput<'a>,
+    ) -> Self {
+        let ResolveInput { prescribed, groups, known, carried, yielding, .. } = *input;
+        let (time_step, start) = (input.time_step.unwrap_or_default(), input.start.unwrap_or(positions));
+        Self {
+            step,
+            iteration,
+            positions,
+            target,
+            prescribed,
+            time_step,
+            start,
+            groups,
+            known,
+            carried,
+            yielding,
+        }
+    }
 }
 
 /// A state that the two-way method has accepted.
@@ -105,7 +129,7 @@ impl SimulationObserver for () {
 }
 
 /// Passes accepted states on, with their time step and iteration.
-pub(super) struct Relay<'a> {
+pub(crate) struct Relay<'a> {
     pub observer: &'a mut dyn SimulationObserver,
     pub world: &'a World,
     pub step: usize,

@@ -1,22 +1,29 @@
-//! What stands in for the scene while bodies sleep; `waking.rs` uses it.
+//! Bodies at rest sleep: what stands in for the scene while they do.
 //!
 //! While bodies sleep, the collision stage has them as obstacles at rest: no rows, no pairs with each other
 //! or with obstacles, trees that are kept. The dynamics has a model of the other bodies alone. Contact forces
 //! between bodies asleep are put aside and handed back when these wake, so that a pile need not settle anew.
 
-use super::approach::BodyElements;
+mod approach;
+mod islands;
+mod waking;
+
+pub(crate) use approach::Motion;
+pub use islands::SleepState;
+
+use super::contact_forces::ContactForce;
 use super::error::SimulationError;
-use super::friction::ContactForce;
-use super::sleep::{Hold, Sleep};
+use approach::BodyElements;
 use bowknot_dynamics::{Dynamics, Energies};
 use bowknot_geometry::Point;
 use bowknot_scene::SleepParams;
 use bowknot_scene::world::World;
 use bowknot_twoway::Resolver;
+use islands::{Hold, Sleep};
 
 /// Bodies that may sleep, and what is in force while some do.
 #[derive(Debug)]
-pub(super) struct Rest {
+pub(crate) struct SleepingBodies {
     pub sleep: Sleep,
     pub elements: BodyElements,
     /// Distance around each body within which it is in contact, its part [m].
@@ -32,7 +39,7 @@ pub(super) struct Rest {
 
 /// What stands in for the whole scene while bodies sleep.
 #[derive(Debug)]
-pub(super) struct Awake {
+pub(crate) struct Awake {
     /// The bodies that are awake.
     pub dynamics: Dynamics,
     /// Contact forces between bodies asleep, and between them and obstacles.
@@ -45,7 +52,7 @@ pub(super) struct Awake {
     pub stretch: f64,
 }
 
-impl Rest {
+impl SleepingBodies {
     pub fn new(params: &SleepParams, world: &World, resolver: &Resolver, dt: f64) -> Option<Self> {
         if !params.enabled {
             return None;
@@ -74,9 +81,9 @@ impl Rest {
             && world.bodies.iter().zip(&self.asleep).all(|(body, asleep)| body.kind.is_none() || *asleep)
     }
 
-    /// Notes which bodies have vertices that are `prescribed`, and whether these move from `start` to their
+    /// Records which bodies have vertices that are `prescribed`, and whether these move from `start` to their
     /// `keyframes` [m].
-    pub fn note_hold(&mut self, world: &World, prescribed: &[bool], keyframes: &[Point], start: &[Point]) {
+    pub fn record_hold(&mut self, world: &World, prescribed: &[bool], keyframes: &[Point], start: &[Point]) {
         let Hold { held, moved } = &mut self.hold;
         held.clear();
         moved.clear();

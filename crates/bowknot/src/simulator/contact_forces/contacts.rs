@@ -3,42 +3,24 @@
 //! After each collision stage the pairs within contact range are divided into contacts and neighbors
 //! ([`Facing`](bowknot_constraints::Facing)). Each contact becomes a spring of the Newton system, whose force follows
 //! from its gap. What a contact remembers is friction (`friction.rs`) and, near rest, its mean (`averaging.rs`). Edges
-//! near their stretch limits are springs as well (`taut.rs`).
+//! near their stretch limits are springs as well (`stretch_limits`).
 
 use super::averaging::{ContactMean, Finds, FoundContacts, gap};
 use super::crowding::share_stiffness;
-use super::friction::{ContactForce, FrictionMemory, vertices as vertices_of};
-use super::held::HeldEdges;
-use super::held_apart::OverLimit;
-use super::rows::RowForces;
-use super::solved::SolvedVertices;
-use super::taut::LimitedEdges;
+use super::friction::{ContactForce, FrictionMemory};
+use super::near_contacts::{MIN_PAIRS, NearContact, REACH, near_contacts, turned};
+use super::newton_bodies::NewtonBodies;
+use super::row_forces::RowForces;
+use crate::simulator::stretch_limits::{HeldEdges, LimitedEdges, OverLimit};
 use bowknot_constraints::{Feature, FrictionModel};
-use bowknot_dynamics::{Dynamics, DynamicsModel, Held, RepulsionSpring, SpringKind, StepError, Touching};
+use bowknot_dynamics::{Dynamics, DynamicsModel, Held, RepulsionSpring, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
 use bowknot_twoway::lcp::DistanceLimit;
-use bowknot_twoway::{GUARDED_FLOOR, PairMultipliers, Resolver};
+use bowknot_twoway::{PairMultipliers, Resolver};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
-
-/// Gap at which the force of a contact vanishes, in the desired distance of the pair. Bodies rest below it.
-const REACH: f64 = 1.2;
-
-/// Gap at which the force becomes infinite, in the way from the minimum separation to the desired distance.
-const FLOOR: f64 = 0.4;
-
-/// Height from which down on a pair is a contact even if its features do not face each other, in the way from the minimum
-/// separation to the desired distance. It is a whole one where the rows of the collision stage guard it: what a row holds the
-/// dynamics must know, else it closes the pair in each iteration anew. Higher: tilted normals push bodies that slide.
-const DEEP: f64 = 0.45;
-
-/// Sine of the angle between two edges below which they count as nearly parallel.
-const PARALLEL: f64 = 0.1;
-
-/// Pairs that one thread looks at, at least.
-const MIN_PAIRS: usize = 1024;
 
 /// What contacts remember from one time step to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,9 +35,9 @@ pub struct CarriedContacts {
 
 /// The contacts in force.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Contacts {
+pub(crate) struct Contacts {
     stiffness: f64,
-    /// The contacts that were found last, with their features [`oriented`]. Springs of edges follow after theirs.
+    /// The contacts that were found last, with their features oriented. Springs of edges follow after theirs.
     found: FoundContacts,
     finds: Finds,
     /// At the end of the last time step. Its forces are those of so many springs, then of rows.
@@ -67,7 +49,7 @@ pub(super) struct Contacts {
     limited: LimitedEdges,
     held: HeldEdges,
     /// Which vertices Newton's method solves together with their contacts.
-    solved: SolvedVertices,
+    newton: NewtonBodies,
     /// Of these, the vertices whose forces the residual of a time step counts.
     counted: Vec<bool>,
     /// Pairs that were in contact range at the start of the time step or after one of its collision stages, without those
@@ -75,22 +57,6 @@ pub(super) struct Contacts {
     touching: Touching,
     /// The component of each vertex, see [`DynamicsModel::components_of_vertices`]. A component is part of one body.
     components: Vec<u32>,
-}
-
-/// A pair that is a contact.
-#[derive(Clone, Copy, Debug)]
-struct NearContact {
-    /// Features of its sides, a vertex before an edge, and the sign that its normal takes with that.
-    features: [Feature; 2],
-    sign: f64,
-    /// How much of a contact it is [1].
-    share: f64,
-    /// Desired distance and minimum separation of the pair [m].
-    desired: f64,
-    least: f64,
-    kind: PairKind,
-    /// Its place in the list of pairs.
-    place: usize,
 }
 
 impl Contacts {
@@ -109,8 +75,8 @@ impl Contacts {
     pub fn leave_out(&mut self, world: &World, resolver: &Resolver, asleep: &[bool]) {
         self.limited = LimitedEdges::new(resolver.scene(), world);
         self.held = HeldEdges::default();
-        self.solved = SolvedVertices::new(world, asleep);
-        self.counted = self.solved.flags().to_vec();
+        self.newton = NewtonBodies::new(world, asleep);
+        self.counted = self.newton.flags().to_vec();
         self.found = FoundContacts::default();
     }
 
@@ -153,23 +119,24 @@ impl Contacts {
             self.limited.set_limits(self.held.limits());
         }
         self.touching = Touching::default();
-        self.note_touching(resolver);
-        self.solved.begin_step(&self.touching);
+        self.record_pairs_in_range(resolver);
+        self.newton.begin_step(&self.touching);
         let CarriedContacts { forces, means, .. } = &self.carried;
         let vertices = resolver.state().x.len() as u32;
         let exists = |mean: &&ContactMean| mean.spring.vertices.iter().all(|&vertex| vertex < vertices);
-        let is_known = |mean: &&ContactMean| exists(mean) && self.is_elastic(&mean.spring.vertices);
+        let is_known = |mean: &&ContactMean| exists(mean) && self.newton.include_any(&mean.spring.vertices);
         let means: Vec<ContactMean> = means.iter().filter(is_known).copied().collect();
         self.finds.begin_step(&means, vertices as usize);
         self.found = FoundContacts::from_means(&means);
-        self.counted.copy_from_slice(self.solved.flags());
+        self.counted.copy_from_slice(self.newton.flags());
         self.memory = FrictionMemory::new(resolver.scene(), forces);
-        self.rows.begin_step(resolver.scene(), forces, self.solved.flags(), dt);
+        self.rows.begin_step(resolver.scene(), forces, self.newton.flags(), dt);
         self.find(resolver, start);
     }
 
-    /// Notes where the `prescribed` vertices are after a collision stage, `x` [m], see [`HeldEdges::go_on`].
-    pub fn note_held(&mut self, resolver: &Resolver, x: &[Point]) {
+    /// Updates the limits of edges to where the prescribed vertices are after a collision stage, `x` [m], see
+    /// [`HeldEdges::go_on`].
+    pub fn update_limits(&mut self, resolver: &Resolver, x: &[Point]) {
         if self.held.go_on(resolver.scene().rest(), x) {
             self.limited.set_limits(self.held.limits());
         }
@@ -209,22 +176,22 @@ impl Contacts {
         };
         let mut forces: Vec<ContactForce> = self.pushes(forces).map(force).collect();
         self.pressing = forces.len();
-        forces.extend(self.rows.forces(resolver, self.solved.flags()));
+        forces.extend(self.rows.forces(resolver, self.newton.flags()));
         let means = self.found.means(&self.finds, [start, &resolver.state().x]);
         self.carried = CarriedContacts { forces, means, yielding: self.limited.yielding().to_vec() };
     }
 
     /// Adds the pairs in contact range to [`Self::touching`], which joins components, and what holds them. Pairs within a
     /// component do neither.
-    pub fn note_touching(&mut self, resolver: &Resolver) {
+    pub fn record_pairs_in_range(&mut self, resolver: &Resolver) {
         let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
-        let Self { touching, components, solved, .. } = self;
+        let Self { touching, components, newton, .. } = self;
         let pairs = contacts.pairs.pairs();
         let within_component = |used: &[u32]| {
             let first = components[used[0] as usize];
             used.len() > 1 && used[1..].iter().all(|&v| components[v as usize] == first)
         };
-        let note = |kind: PairKind| {
+        let record = |kind: PairKind| {
             let places = contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS);
             let in_range = places
                 .map(|p| (p, &pairs[p].vertices[..kind.vertex_count()]))
@@ -237,13 +204,13 @@ impl Contacts {
             // Meshes have pairs with many normals near each contact, of which few push.
             let pushes = |place: &usize| is_half_space || contacts.multipliers[*place] != 0.0;
             let held = in_range.par_iter().filter(|(place, _)| pushes(place)).filter_map(|&(place, used)| {
-                let vertex = *used.iter().find(|v| solved.moves(**v))?;
-                let held = is_half_space || !used.iter().all(|&v| solved.moves(v));
+                let vertex = *used.iter().find(|v| newton.moves(**v))?;
+                let held = is_half_space || !used.iter().all(|&v| newton.moves(v));
                 let rough = contacts.frictions.get(place).is_some_and(|friction| *friction > 0.0);
                 let normal = || {
                     let separation = &contacts.separations[place];
                     let features = scene.features(kind, &pairs[place], separation);
-                    turned(resolver, solved, features, &separation.normal)
+                    turned(resolver, newton, features, &separation.normal)
                 };
                 held.then(|| Held { vertex, normal: normal(), rough })
             });
@@ -254,18 +221,18 @@ impl Contacts {
                 .par_extend(joined.flat_map_iter(|(_, used)| used[1..].iter().map(|&v| [used[0], v])));
         };
         // One way to the threads for all loops.
-        rayon::scope(|_| PairKind::ALL.into_iter().for_each(note));
+        rayon::scope(|_| PairKind::ALL.into_iter().for_each(record));
     }
 
-    /// Notes what rows alone carry after a call of the collision stage. If the dynamics knows no contacts they hold all
+    /// Records what rows alone carry after a call of the collision stage. If the dynamics knows no contacts they hold all
     /// bodies, and the residual does not count the vertices where they press.
-    pub fn note_rows(&mut self, resolver: &Resolver) {
-        self.rows.note(resolver, self.solved.flags());
+    pub fn record_rows(&mut self, resolver: &Resolver) {
+        self.rows.record(resolver, self.newton.flags());
         if self.stiffness != 0.0 {
             return;
         }
         let contacts = &resolver.state().contacts;
-        self.counted.copy_from_slice(self.solved.flags());
+        self.counted.copy_from_slice(self.newton.flags());
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind).filter(|&p| contacts.multipliers[p] != 0.0) {
                 let used = &contacts.pairs.pairs()[p].vertices[..kind.vertex_count()];
@@ -281,12 +248,12 @@ impl Contacts {
             return;
         }
         let (scene, state) = (resolver.scene(), resolver.state());
-        let mut near = self.near_contacts(resolver);
+        let mut near = near_contacts(resolver, &self.newton);
         // Pairs with the same features are one contact.
         let mut known = FxHashSet::default();
         near.retain(|contact| known.insert(contact.features));
         let of_contacts = near.par_iter().with_min_len(MIN_PAIRS);
-        let spring = |contact: &NearContact| self.spring(resolver, contact);
+        let spring = |contact: &NearContact| contact.spring(resolver, &self.newton, self.stiffness);
         let mut found = FoundContacts {
             features: near.iter().map(|contact| contact.features).collect(),
             springs: of_contacts.map(spring).collect(),
@@ -296,7 +263,7 @@ impl Contacts {
                 .collect(),
         };
         let shares: Vec<f64> = near.iter().map(|contact| contact.share).collect();
-        share_stiffness(&mut found.springs, &shares, &found.distances, self.solved.flags());
+        share_stiffness(&mut found.springs, &shares, &found.distances, self.newton.flags());
         let go_on = found.average(&self.found, &self.finds, self.stiffness, [start, &state.x]);
         for (spring, features) in found.springs.iter_mut().zip(&found.features) {
             spring.friction_ratio = self.memory.of(scene, features);
@@ -312,73 +279,14 @@ impl Contacts {
             spring.start_gap = if *goes_on { at_start } else { at_start.max(reached) };
         });
         self.finds.add();
-        found.springs.extend(self.limited.taut(&state.x, start, self.stiffness));
+        found.springs.extend(self.limited.taut_springs(&state.x, start, self.stiffness));
         self.found = found;
-    }
-
-    /// The pairs in contact range that are contacts and deform something.
-    fn near_contacts(&self, resolver: &Resolver) -> Vec<NearContact> {
-        let (scene, state) = (resolver.scene(), resolver.state());
-        let contacts = &state.contacts;
-        let of_kind = |kind: PairKind| {
-            let contact = move |place: usize| {
-                let (separation, pair) = (&contacts.separations[place], &contacts.pairs.pairs()[place]);
-                // A pair whose distance is not a number gets no spring.
-                let near = separation.distance < scene.contact_range(kind, pair);
-                if !near || !self.is_elastic(&pair.vertices[..kind.vertex_count()]) {
-                    return None;
-                }
-                let (features, sign) = oriented(scene.features(kind, pair, separation));
-                let facing = scene.contact_share(features, &(separation.normal * sign), &state.x)
-                    * crossing(&features, &pair.vertices, &state.x);
-                let (desired, least) = (scene.desired_distance(kind, pair), scene.min_separation(kind, pair));
-                let share = facing.max(guarded((separation.distance - least) / (desired - least)));
-                (share > 0.0).then_some(NearContact { features, sign, share, desired, least, kind, place })
-            };
-            contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS).filter_map(contact)
-        };
-        let mut found = Vec::new();
-        // One way to the threads for all loops.
-        rayon::scope(|_| PairKind::ALL.into_iter().for_each(|kind| found.par_extend(of_kind(kind))));
-        found
-    }
-
-    /// The spring of a contact, without what follows from the start of the time step: gap and friction.
-    fn spring(
-        &self,
-        resolver: &Resolver,
-        &NearContact { features, sign, desired, least, kind, place, .. }: &NearContact,
-    ) -> RepulsionSpring {
-        let (scene, state) = (resolver.scene(), resolver.state());
-        let contacts = &state.contacts;
-        let (separation, pair) = (&contacts.separations[place], &contacts.pairs.pairs()[place]);
-        let normal = turned(resolver, &self.solved, features, &(separation.normal * sign));
-        let plane = (kind == PairKind::VertexHalfSpace)
-            .then(|| scene.model().half_spaces()[pair.elements[1] as usize]);
-        let offset = plane.map_or(0.0, |plane| plane.offset);
-        let weights = separation.signed_weights(kind).map(|weight| weight * sign);
-        let mut vertices = pair.vertices;
-        (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
-        let floor = least + FLOOR * (desired - least);
-        RepulsionSpring {
-            kind: SpringKind::Contact,
-            vertices,
-            weights,
-            normal,
-            offset,
-            reach: REACH * desired,
-            floor,
-            start_gap: 0.0,
-            stiffness: self.stiffness,
-            friction: contacts.frictions.get(place).copied().unwrap_or(0.0),
-            friction_ratio: Vector::zeros(),
-        }
     }
 
     /// What a contact with an obstacle or a half-space holds.
     fn held_by(&self, spring: &RepulsionSpring) -> Option<Held> {
         let RepulsionSpring { vertices, weights, normal, friction, .. } = *spring;
-        let moving = |k: &usize| weights[*k] != 0.0 && self.solved.moves(vertices[*k]);
+        let moving = |k: &usize| weights[*k] != 0.0 && self.newton.moves(vertices[*k]);
         let held = (0..4).filter(moving).map(|k| weights[k]).sum::<f64>().abs() > 0.5;
         held.then(|| {
             (0..4).find(moving).map(|k| Held { vertex: vertices[k], normal, rough: friction > 0.0 })
@@ -394,53 +302,11 @@ impl Contacts {
 
     /// Which of so many vertices have contacts that the dynamics knows; none if it knows no contacts.
     pub fn known(&self, count: usize) -> &[bool] {
-        if self.stiffness == 0.0 { &[] } else { &self.solved.flags()[..count] }
-    }
-
-    /// Whether a contact deforms something.
-    fn is_elastic(&self, vertices: &[u32]) -> bool {
-        vertices.iter().any(|&v| self.solved.flags()[v as usize])
+        if self.stiffness == 0.0 { &[] } else { &self.newton.flags()[..count] }
     }
 
     /// Gives the springs to the dynamics.
     pub fn apply(&self, dynamics: &mut Dynamics) -> Result<(), StepError> {
         if self.stiffness == 0.0 { Ok(()) } else { dynamics.set_repulsion(&self.found.springs) }
-    }
-}
-
-/// The normal of a contact. One outside of the cones of its features is turned to their border: a tilted one would push
-/// sliding bodies aside.
-fn turned(resolver: &Resolver, solved: &SolvedVertices, features: [Feature; 2], normal: &Vector) -> Vector {
-    let (scene, x) = (resolver.scene(), &resolver.state().x);
-    let topology = scene.model().topology();
-    let moves = |feature: &Feature| vertices_of(topology, feature).iter().any(|&v| solved.moves(v));
-    let rigid = features.iter().position(|feature| !moves(feature));
-    scene.turned(features, normal, x, rigid)
-}
-
-/// How far two edges are from parallel [1]: 1 if they cross at a sine of [`PARALLEL`] or more, and for other features. The closest
-/// points of parallel edges are anywhere along them, and their vertices are contacts.
-fn crossing(features: &[Feature; 2], vertices: &[u32; 4], x: &[Point]) -> f64 {
-    if !matches!(features, [Feature::Edge(_), Feature::Edge(_)]) {
-        return 1.0;
-    }
-    let edge = |k: usize| x[vertices[k] as usize] - x[vertices[k + 1] as usize];
-    let (first, second) = (edge(0), edge(2));
-    let product = PARALLEL * first.norm() * second.norm();
-    if product > 0.0 { (first.cross(&second).norm() / product).min(1.0).powi(2) } else { 0.0 }
-}
-
-/// How much of a contact a pair at a height above the minimum separation is, see [`DEEP`], however its features face each
-/// other [1].
-fn guarded(height: f64) -> f64 {
-    ((DEEP - height) / (DEEP - GUARDED_FLOOR)).clamp(0.0, 1.0)
-}
-
-/// Features with a vertex before an edge, so that pairs of different kinds at the same features are one
-/// contact, and the sign that the normal takes.
-fn oriented(features: [Feature; 2]) -> ([Feature; 2], f64) {
-    match features {
-        [edge @ Feature::Edge(_), vertex @ Feature::Vertex(_)] => ([vertex, edge], -1.0),
-        _ => (features, 1.0),
     }
 }

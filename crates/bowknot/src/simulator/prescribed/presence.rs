@@ -5,12 +5,12 @@
 //! nothing. It comes back only if its place is clear (`clearance.rs`), so that the time step starts from a state without
 //! intersections, from which on the collision stage holds it as any other.
 
-use super::approach::Motion;
 use super::clearance::in_the_way;
-use super::error::SimulationError;
-use super::friction::vertices;
-use super::simulator::{Simulator, resolve_error};
-use super::statistics::StepStatistics;
+use crate::simulator::Simulator;
+use crate::simulator::contact_forces::vertices_of;
+use crate::simulator::error::SimulationError;
+use crate::simulator::report::StepStatistics;
+use crate::simulator::sleep::Motion;
 use bowknot_constraints::Feature;
 use bowknot_geometry::CollisionModel;
 use bowknot_scene::world::World;
@@ -27,7 +27,7 @@ impl Simulator {
     }
 
     /// Puts the obstacles that are not there where they belong at `time`, so that they do not move within the time step.
-    pub(super) fn place_absent(&mut self, time: f64) {
+    pub(crate) fn place_absent(&mut self, time: f64) {
         let Self { world, present, positions, .. } = self;
         for (body, _) in world.bodies.iter().zip(present).filter(|(_, present)| !**present) {
             let range = body.vertices.start as usize..body.vertices.end as usize;
@@ -37,7 +37,7 @@ impl Simulator {
 
     /// Lets obstacles vanish and appear at the end of a time step. Those that would meet something wait. What was near one
     /// that vanishes wakes, and so does what is near one that appears.
-    pub(super) fn update_presence(&mut self, statistics: &mut StepStatistics) -> Result<(), SimulationError> {
+    pub(crate) fn update_presence(&mut self, statistics: &mut StepStatistics) -> Result<(), SimulationError> {
         let Self { world, present, resolver, positions, dt, .. } = self;
         let wanted = world.present(statistics.time, *dt);
         let mut changed = vec![false; present.len()];
@@ -64,37 +64,39 @@ impl Simulator {
         let is_there = |feature: &Feature| is_there(&self.world, &self.present, feature);
         carried.forces.retain(|force| force.features.iter().all(is_there));
         carried.means.retain(|mean| mean.features.iter().all(is_there));
-        let Self { world, rest, positions, .. } = self;
-        if let Some(rest) = rest {
+        let Self { world, sleeping, positions, .. } = self;
+        if let Some(sleeping) = sleeping {
             let (bodies, half_spaces) = changed.split_at(world.bodies.len());
             let motion = Motion {
                 start: &positions[..world.collision_vertices()],
                 end: &positions[..world.collision_vertices()],
-                margins: &rest.margins,
-                asleep: &rest.asleep,
+                margins: &sleeping.margins,
+                asleep: &sleeping.asleep,
                 at_rest: &vec![true; bodies.len()],
                 changed: bodies,
             };
-            let mut wakes = rest.elements.approached(world, &motion);
+            let mut wakes = sleeping.elements.approached(world, &motion);
             // A half-space may hold any body.
             wakes.iter_mut().for_each(|wakes| *wakes |= half_spaces.contains(&true));
-            rest.sleep.wake(&wakes);
+            sleeping.sleep.wake(&wakes);
         }
         self.take_out(carried)
     }
 
     /// Gives the collision stage the filters that are in force: of obstacles that are there, and of bodies asleep, which
     /// are obstacles.
-    pub(super) fn apply_filters(&mut self) -> Result<(), SimulationError> {
-        let Self { world, present, resolver, rest, step, .. } = self;
+    pub(crate) fn apply_filters(&mut self) -> Result<(), SimulationError> {
+        let Self { world, present, resolver, sleeping, step, .. } = self;
         let (mut filters, half_spaces) = world.filters(present);
-        let asleep = rest.as_ref().map_or_else(Vec::new, |rest| rest.sleep.asleep());
+        let asleep = sleeping.as_ref().map_or_else(Vec::new, |sleeping| sleeping.sleep.asleep());
         filters.iter_mut().zip(asleep).for_each(|(filter, asleep)| filter.obstacle |= asleep);
         let model = resolver.scene().model();
         if model.bodies() == filters && model.half_spaces() == half_spaces {
             return Ok(());
         }
-        resolver.set_filters(&filters, &half_spaces).map_err(|source| resolve_error(world, *step, source))
+        resolver
+            .set_filters(&filters, &half_spaces)
+            .map_err(|source| SimulationError::resolve(world, *step, source))
     }
 }
 
@@ -102,7 +104,7 @@ impl Simulator {
 fn is_there(world: &World, present: &[bool], feature: &Feature) -> bool {
     let index = match feature {
         Feature::HalfSpace(half_space) => Some(world.bodies.len() + *half_space as usize),
-        _ => vertices(world.collision.topology(), feature)
+        _ => vertices_of(world.collision.topology(), feature)
             .first()
             .and_then(|&v| world.collision.vertex_body().get(v as usize))
             .map(|&body| body as usize),

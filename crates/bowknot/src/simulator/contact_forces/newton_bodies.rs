@@ -11,14 +11,14 @@ use bowknot_scene::world::World;
 
 /// The vertices that Newton's method solves in a time step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SolvedVertices {
+pub(super) struct NewtonBodies {
     /// Vertices of bodies that deform.
     deformable: Vec<bool>,
     grains: Vec<bool>,
     solved: Vec<bool>,
 }
 
-impl SolvedVertices {
+impl NewtonBodies {
     /// Of a world whose bodies `asleep` are obstacles; that has one entry per body, or none at all.
     pub fn new(world: &World, asleep: &[bool]) -> Self {
         let nothing = vec![false; world.positions.len()];
@@ -62,6 +62,11 @@ impl SolvedVertices {
         self.deformable[vertex as usize] || self.grains[vertex as usize]
     }
 
+    /// Whether Newton's method solves any of the vertices.
+    pub fn include_any(&self, vertices: &[u32]) -> bool {
+        vertices.iter().any(|&v| self.solved[v as usize])
+    }
+
     /// One entry per vertex of the world.
     pub fn flags(&self) -> &[bool] {
         &self.solved
@@ -75,7 +80,7 @@ mod tests {
     #[test]
     fn grains_that_press_on_a_body_are_solved_and_no_others() {
         // A vertex of cloth, four grains, a vertex of an obstacle.
-        let mut vertices = SolvedVertices {
+        let mut vertices = NewtonBodies {
             deformable: vec![true, false, false, false, false, false],
             grains: vec![false, true, true, true, true, false],
             solved: Vec::new(),

@@ -29,7 +29,7 @@ pub struct HeldPair {
 
 /// What prescribed vertices ask for beyond the limits of edges; vertices are numbered as in the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct OverLimit {
+pub(crate) struct OverLimit {
     /// The edge that yields most.
     pub edge: [u32; 2],
     /// Its new length in its limit [1].
@@ -39,7 +39,7 @@ pub(super) struct OverLimit {
 }
 
 impl HeldApart {
-    pub(super) fn new(world: &World, over: &OverLimit) -> Option<Self> {
+    pub(crate) fn new(world: &World, over: &OverLimit) -> Option<Self> {
         let body = &world.bodies[*world.collision.vertex_body().get(over.edge[0] as usize)? as usize];
         let named =
             |pair: HeldPair| HeldPair { vertices: pair.vertices.map(|v| body.mesh_number(v)), ..pair };

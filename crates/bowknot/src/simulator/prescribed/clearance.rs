@@ -4,7 +4,7 @@
 //! intersections. So an obstacle appears only if no element of it intersects one of a deformable body, by the exact
 //! predicates of the judge, and none is nearer than the minimum separation of the two.
 
-use super::inside::Enclosure;
+use crate::simulator::start::Enclosure;
 use bowknot_check::{CheckError, Judge, StateOptions};
 use bowknot_geometry::{Aabb, BodyFilter, CollisionModel, PairKind, Point};
 use bowknot_proximity::{PairList, ProximitySearch};

@@ -18,7 +18,7 @@ const ARRIVED: f64 = 0.01;
 
 /// The ends of prescribed vertices, on the straight ways from the start of the time step to their keyframes.
 #[derive(Debug, Default)]
-pub(super) struct Ends {
+pub(crate) struct Ends {
     /// One entry per vertex [m]; only those of prescribed ones count.
     pub places: Vec<Point>,
     /// How far each obstacle and pin had to go before the last collision problem [m].
@@ -32,8 +32,8 @@ impl Ends {
         self.places.extend_from_slice(keyframes);
     }
 
-    /// Notes where obstacles and pins are before a collision problem, in which `x` moves.
-    pub fn note(&mut self, world: &World, prescribed: &[bool], x: &[Point]) {
+    /// Records how far obstacles and pins have to go before a collision problem, in which `x` moves.
+    pub fn record_ways(&mut self, world: &World, prescribed: &[bool], x: &[Point]) {
         let Self { places, ways } = self;
         ways.clear();
         ways.extend(led(world).map(|vertices| farthest(vertices, prescribed, x, places)));

@@ -1,7 +1,7 @@
 //! Where a time step that is not solved is out of balance, with the names of a scene.
 
-use super::contacts::Contacts;
-use super::waits::WaitingElements;
+use super::blocking::WaitingElements;
+use crate::simulator::contact_forces::Contacts;
 use bowknot_constraints::Feature;
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::World;
@@ -37,7 +37,7 @@ impl Unsolved {
 
 /// What a time step ended with.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Search<'a> {
+pub(crate) struct Search<'a> {
     pub world: &'a World,
     pub contacts: &'a Contacts,
     /// Forces of the springs [N].

@@ -7,12 +7,12 @@ use bowknot_scene::world::{World, WorldBody};
 const MAX_PARTS: usize = 64;
 
 /// Whether a point lies inside of closed surfaces: a ray from it crosses an odd number of triangles.
-pub(super) fn is_inside(point: &Point, triangles: impl Iterator<Item = [Point; 3]>) -> bool {
+pub(crate) fn is_inside(point: &Point, triangles: impl Iterator<Item = [Point; 3]>) -> bool {
     triangles.filter(|triangle| ray_crosses(point, triangle)).count() % 2 == 1
 }
 
 /// A closed surface of a body, at given positions.
-pub(super) struct Enclosure<'a> {
+pub(crate) struct Enclosure<'a> {
     world: &'a World,
     positions: &'a [Point],
     triangles: Vec<[u32; 3]>,
@@ -50,7 +50,7 @@ impl<'a> Enclosure<'a> {
 }
 
 /// Deformable bodies that start inside of a closed obstacle that is `present`, which they can never leave, in words.
-pub(super) fn enclosed_bodies(world: &World, present: &[bool]) -> Vec<String> {
+pub(crate) fn enclosed_bodies(world: &World, present: &[bool]) -> Vec<String> {
     let is_obstacle = |body: &WorldBody| body.kind.is_none();
     let obstacles = world.bodies.iter().zip(present).enumerate();
     let mut found = Vec::new();

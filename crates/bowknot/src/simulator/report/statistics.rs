@@ -1,9 +1,9 @@
 //! What a time step reports: one line of `stats.jsonl`.
 
-use super::held_apart::HeldApart;
-use super::unsolved::Unsolved;
-use super::waits::WaitingElements;
-use bowknot_dynamics::{Energies, NewtonInfo};
+use super::blocking::WaitingElements;
+use super::unsolved::{Search, Unsolved};
+use crate::simulator::stretch_limits::HeldApart;
+use bowknot_dynamics::{Energies, NewtonInfo, Residual};
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{Skipped, Statistics};
 use serde::{Deserialize, Serialize};
@@ -171,14 +171,14 @@ pub struct StepSeconds {
 
 impl StepStatistics {
     /// Adds a Newton iteration.
-    pub(super) fn add_newton(&mut self, info: &NewtonInfo, seconds: f64) {
+    pub(crate) fn add_newton(&mut self, info: &NewtonInfo, seconds: f64) {
         self.newton_iterations += 1;
         self.cg_iterations += info.cg.iterations;
         self.seconds.dynamics += seconds;
     }
 
     /// Adds a collision problem.
-    pub(super) fn add_collision(&mut self, call: &Statistics, name_of: impl Fn(u32) -> String) {
+    pub(crate) fn add_collision(&mut self, call: &Statistics, name_of: impl Fn(u32) -> String) {
         self.two_way_steps += call.steps;
         self.searches += call.searches;
         self.pairs = call.pairs;
@@ -204,8 +204,29 @@ impl StepStatistics {
         self.slowest_body = call.slowest_body.filter(|_| !call.converged).map(name_of);
     }
 
+    /// Fills in with which `residual` the iterations ended, and where they are out of balance if the time step is not solved.
+    pub(crate) fn end_iterations(
+        &mut self,
+        search: &Search<'_>,
+        residual: &Residual,
+        is_balanced: bool,
+        slowest_body: Option<u32>,
+    ) {
+        (self.residual_n, self.residual_m) = (residual.force, residual.distance);
+        self.solved = self.converged && is_balanced;
+        if !self.solved {
+            let of_forces = || residual.vertex.map(|vertex| search.of_forces(vertex));
+            let of_collisions = || search.of_collisions(&self.waits, slowest_body);
+            // Where forces balance, what stopped the collision stage is the cause.
+            self.unsolved = match is_balanced {
+                true => of_collisions().or_else(of_forces),
+                false => of_forces().or_else(of_collisions),
+            };
+        }
+    }
+
     /// Fills in what is measured at the end.
-    pub(super) fn finish(&mut self, energies: &Energies, momentum: &Vector, center: &Point) {
+    pub(crate) fn finish(&mut self, energies: &Energies, momentum: &Vector, center: &Point) {
         let Energies { kinetic, elastic, potential } = *energies;
         self.energy = Energy { kinetic, elastic, potential };
         self.momentum = (*momentum).into();
@@ -213,7 +234,7 @@ impl StepStatistics {
     }
 
     /// Fills in the total times, and the wall time that no stage accounts for.
-    pub(super) fn close(&mut self, total: f64, cpu_seconds: f64) {
+    pub(crate) fn close(&mut self, total: f64, cpu_seconds: f64) {
         let s = &mut self.seconds;
         s.total = total;
         s.other = (total - s.dynamics - s.search - s.evaluate - s.backward - s.forward).max(0.0);

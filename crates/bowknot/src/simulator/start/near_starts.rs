@@ -52,7 +52,7 @@ impl fmt::Display for NearStart {
 
 /// The pairs in range at the present state that are nearer than their contact distance, by bodies, most
 /// first.
-pub(super) fn near_starts(world: &World, resolver: &Resolver) -> Vec<NearStart> {
+pub(crate) fn near_starts(world: &World, resolver: &Resolver) -> Vec<NearStart> {
     let (scene, state) = (resolver.scene(), resolver.state());
     let model = scene.model();
     let mut neighbors = Neighbors::default();

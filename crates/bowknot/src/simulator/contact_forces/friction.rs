@@ -78,18 +78,18 @@ fn for_each_side(scene: &CollisionScene, features: &[Feature; 2], mut visit: imp
     let (model, topology) = (scene.model(), scene.model().topology());
     let body = |feature: &Feature| match feature {
         Feature::HalfSpace(half_space) => Some(u32::MAX - half_space),
-        _ => model.vertex_body().get(*vertices(topology, feature).first()? as usize).copied(),
+        _ => model.vertex_body().get(*vertices_of(topology, feature).first()? as usize).copied(),
     };
     for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
         let Some(against) = body(&features[other]) else { continue };
-        let of_feature = vertices(topology, &features[own]);
+        let of_feature = vertices_of(topology, &features[own]);
         let share = 1.0 / of_feature.len().max(1) as f64;
         of_feature.iter().for_each(|&vertex| visit((vertex, against), share, sign));
     }
 }
 
 /// The vertices of a feature; none of a half-space.
-pub(super) fn vertices<'a>(topology: &'a Topology, feature: &'a Feature) -> &'a [u32] {
+pub(crate) fn vertices_of<'a>(topology: &'a Topology, feature: &'a Feature) -> &'a [u32] {
     match feature {
         Feature::Vertex(vertex) => std::slice::from_ref(vertex),
         Feature::Edge(edge) => topology.edges.get(*edge as usize).map_or(&[], |edge| edge),

@@ -12,7 +12,7 @@
 
 use super::held_apart::{HeldPair, OverLimit};
 use super::least_excess::LimitedGraph;
-use super::taut::ROOM;
+use super::limited_edges::ROOM;
 use bowknot_geometry::{Point, UnionFind, Vector};
 use bowknot_twoway::lcp::DistanceLimit;
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ const GOES_BACK: f64 = 0.99;
 
 /// The edges that yield.
 #[derive(Clone, Debug, Default)]
-pub(super) struct HeldEdges {
+pub(crate) struct HeldEdges {
     /// The vertices for which the patches were made.
     prescribed: Vec<bool>,
     patches: Vec<Patch>,

@@ -34,7 +34,7 @@ const MIN_EDGES: usize = 4096;
 
 /// The edges that have a stretch limit.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LimitedEdges {
+pub(crate) struct LimitedEdges {
     /// By the scene.
     edges: Vec<DistanceLimit>,
     /// The limits in force [m].
@@ -92,7 +92,7 @@ impl LimitedEdges {
 
     /// The edges that are nearly taut at `x`: each as a spring of the given `stiffness`. `start` are
     /// positions at the start of the time step.
-    pub fn taut(&self, x: &[Point], start: &[Point], stiffness: f64) -> Vec<RepulsionSpring> {
+    pub fn taut_springs(&self, x: &[Point], start: &[Point], stiffness: f64) -> Vec<RepulsionSpring> {
         let length = |x: &[Point], [a, b]: [u32; 2]| x[a as usize] - x[b as usize];
         let taut = |(edge, &limit): (&DistanceLimit, &f64)| {
             let now = length(x, edge.vertices);

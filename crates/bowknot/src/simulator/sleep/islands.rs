@@ -10,7 +10,7 @@
 //! Unlike there, an island must be held by something at rest: an obstacle, a half-space or a pin. What floats
 //! without gravity may drift as slowly as it likes, and the momentum of free bodies is not changed.
 
-use super::friction::ContactForce;
+use crate::simulator::contact_forces::ContactForce;
 use bowknot_dynamics::Touching;
 use bowknot_geometry::{Point, UnionFind};
 use bowknot_scene::SleepParams;
@@ -35,7 +35,7 @@ impl SleepState {
 
 /// The rule by which bodies fall asleep, and its state.
 #[derive(Clone, Debug)]
-pub(super) struct Sleep {
+pub(crate) struct Sleep {
     /// Largest distance of a vertex at rest from its origin [m].
     distance: f64,
     /// Time steps at rest after which a body may sleep.
@@ -45,7 +45,7 @@ pub(super) struct Sleep {
 
 /// What holds or moves the bodies in a time step, one entry per body of the world.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Hold {
+pub(crate) struct Hold {
     /// Whether it has prescribed vertices.
     pub held: Vec<bool>,
     /// Whether prescribed vertices of it move.
@@ -94,10 +94,10 @@ impl Sleep {
         self.state.calm_steps.fill(0);
     }
 
-    /// Notes where the bodies are at the end of a time step, and which have touched in it. Bodies at rest fall
+    /// Records where the bodies are at the end of a time step, and which have touched in it. Bodies at rest fall
     /// asleep, as islands; those that others have touched wake. Returns whether any did.
     pub fn update(&mut self, world: &World, positions: &[Point], touching: &Touching, hold: &Hold) -> bool {
-        self.note_rest(world, positions);
+        self.count_calm_steps(world, positions);
         let islands = self.islands(world, touching, hold);
         let changed = islands != self.state.islands;
         for ((before, after), calm) in self.state.islands.iter().zip(&islands).zip(&mut self.state.calm_steps)
@@ -111,7 +111,7 @@ impl Sleep {
     }
 
     /// Counts the time steps that bodies have been at rest.
-    fn note_rest(&mut self, world: &World, positions: &[Point]) {
+    fn count_calm_steps(&mut self, world: &World, positions: &[Point]) {
         let SleepState { origins, calm_steps, islands } = &mut self.state;
         for (index, body) in world.bodies.iter().enumerate() {
             if body.kind.is_none() || is_asleep(islands[index]) {
@@ -178,7 +178,7 @@ impl Sleep {
 }
 
 /// Parts of the contact forces.
-pub(super) struct Parted {
+pub(crate) struct Parted {
     /// Those with a side that is awake.
     pub awake: Vec<ContactForce>,
     /// Those between bodies asleep and obstacles.
@@ -186,7 +186,7 @@ pub(super) struct Parted {
 }
 
 /// Divides contact forces by whether one of their sides is a deformable body that is awake.
-pub(super) fn part(world: &World, asleep: &[bool], forces: &[ContactForce]) -> Parted {
+pub(crate) fn part(world: &World, asleep: &[bool], forces: &[ContactForce]) -> Parted {
     let topology = world.collision.topology();
     let is_awake = |feature: &bowknot_constraints::Feature| {
         use bowknot_constraints::Feature;

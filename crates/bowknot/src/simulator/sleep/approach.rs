@@ -17,12 +17,12 @@ use bowknot_scene::world::World;
 
 /// The elements of all bodies: triangles, edges and vertices, as three vertices with repetitions.
 #[derive(Clone, Debug, Default)]
-pub(super) struct BodyElements {
+pub(crate) struct BodyElements {
     of_bodies: Vec<Vec<[u32; 3]>>,
 }
 
 /// The places of the vertices that collide in a time step [m], and what else decides whether bodies meet.
-pub(super) struct Motion<'a> {
+pub(crate) struct Motion<'a> {
     /// At its start.
     pub start: &'a [Point],
     /// At its end.

@@ -27,7 +27,7 @@ const DIRECTIONS: [(Vector, [&str; 2]); 6] = [
 ];
 
 /// Advice in words, for the pairs of bodies with the most of these intersections.
-pub(super) fn advice(world: &World, intersections: &[Intersection]) -> Vec<String> {
+pub(crate) fn advice(world: &World, intersections: &[Intersection]) -> Vec<String> {
     let mut counts: BTreeMap<(u32, Other), usize> = BTreeMap::new();
     for intersection in intersections {
         if let Some(pair) = sides(world, intersection) {

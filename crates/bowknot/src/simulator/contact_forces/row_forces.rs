@@ -4,7 +4,7 @@
 //! A call starts from what the last one ended with, also that of the last time step. So its few sweeps go on where those
 //! before it ended, and a pile stands, whose weight they would not carry down from its top in one time step.
 
-use super::friction::{ContactForce, vertices};
+use super::friction::{ContactForce, vertices_of};
 use bowknot_constraints::Feature;
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_twoway::{CollisionScene, PairMultipliers, Resolver};
@@ -29,7 +29,7 @@ impl RowForces {
         let topology = scene.model().topology();
         let is_row = |force: &&ContactForce| {
             // The features of a checkpoint may be anything.
-            let mut used = force.features.iter().flat_map(|feature| vertices(topology, feature));
+            let mut used = force.features.iter().flat_map(|feature| vertices_of(topology, feature));
             used.all(|&v| solved.get(v as usize) == Some(&false))
         };
         let multipliers =
@@ -47,8 +47,8 @@ impl RowForces {
         &self.multipliers
     }
 
-    /// Notes what the pairs carry that a call of the collision stage ended with.
-    pub fn note(&mut self, resolver: &Resolver, solved: &[bool]) {
+    /// Records what the pairs carry that a call of the collision stage ended with.
+    pub fn record(&mut self, resolver: &Resolver, solved: &[bool]) {
         self.multipliers.clear();
         self.multipliers.extend(pressing(resolver, solved).map(|(pair, _)| kept(pair)));
     }

@@ -1,6 +1,6 @@
 //! Which vertices are prescribed in a time step, where to, and which of them lag behind.
 
-use super::simulator::{Scratch, Simulator};
+use crate::simulator::{Scratch, Simulator};
 use bowknot_geometry::Point;
 use bowknot_twoway::ResolveInput;
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ const NO_DISTANCE: f64 = 1e-9;
 impl Simulator {
     /// Fills in which vertices are prescribed at `time`, the end of the time step, and their keyframes. The
     /// vertices of a pin form a group: they move by one fraction of their way.
-    pub(super) fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
+    pub(crate) fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
         let Self { world, anchors, attachments, positions, dt, .. } = self;
         let Scratch { prescribed, keyframes, groups, .. } = scratch;
         let count = world.collision_vertices();
@@ -60,7 +60,7 @@ impl Simulator {
     }
 
     /// The obstacles and pins that are behind their keyframes at the end of the time step, and how far [m].
-    pub(super) fn waiting(&self, time: f64, scratch: &Scratch) -> BTreeMap<String, f64> {
+    pub(crate) fn waiting(&self, time: f64, scratch: &Scratch) -> BTreeMap<String, f64> {
         let behind = |vertices: &mut dyn Iterator<Item = u32>| {
             vertices
                 .map(|v| (scratch.keyframes[v as usize] - self.positions[v as usize]).norm())

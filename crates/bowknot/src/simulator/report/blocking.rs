@@ -24,7 +24,7 @@ pub struct WaitingElements {
 }
 
 impl WaitingElements {
-    pub(super) fn new(world: &World, wait: &Wait) -> Self {
+    pub(crate) fn new(world: &World, wait: &Wait) -> Self {
         let (mut elements, mut bodies) = (Vec::new(), Vec::new());
         match &wait.pair {
             Some(pair) => {
@@ -95,7 +95,7 @@ fn kinds(kind: PairKind) -> [&'static str; 2] {
 }
 
 /// An element of a body in words, with the numbers that its vertices have in the body's mesh.
-pub(super) fn element_words(world: &World, kind: &str, vertices: &[u32]) -> String {
+pub(crate) fn element_words(world: &World, kind: &str, vertices: &[u32]) -> String {
     let Some(&first) = vertices.first() else { return kind.to_owned() };
     let body = world.collision.vertex_body().get(first as usize).copied().unwrap_or(u32::MAX);
     let number = |v: &u32| world.bodies.get(body as usize).map_or(*v, |b| b.mesh_number(*v)).to_string();

@@ -1,7 +1,7 @@
 //! How far prescribed motions lead: known before the first time step, so a run refuses them before it writes.
 
-use super::error::SimulationError;
-use super::simulator::{Simulator, resolve_error, time_of};
+use crate::simulator::error::SimulationError;
+use crate::simulator::{Simulator, time_of};
 use bowknot_geometry::Point;
 use bowknot_scene::world::ObstacleMotion;
 
@@ -71,7 +71,9 @@ impl Simulator {
 
     fn check_at(&self, step: usize, positions: &[Point]) -> Result<(), SimulationError> {
         let collide = &positions[..self.world.collision_vertices()];
-        self.resolver.check_coordinates(collide).map_err(|source| resolve_error(&self.world, step, source))
+        self.resolver
+            .check_coordinates(collide)
+            .map_err(|source| SimulationError::resolve(&self.world, step, source))
     }
 
     /// The time step, up to `steps`, at whose end a size is largest.
