@@ -120,7 +120,7 @@ fn described(contacts: &ContactSet) -> String {
     let ContactSet {
         pairs,
         separations,
-        desired,
+        deltas,
         min_separations,
         multipliers,
         frictions,
@@ -132,7 +132,7 @@ fn described(contacts: &ContactSet) -> String {
         .map(|s| bits(&[s.normal.as_slice(), &s.weights, &[s.distance, s.width]].concat()))
         .collect();
     let vectors: Vec<u64> = friction_multipliers.iter().flat_map(|f| bits(f.as_slice())).collect();
-    let numbers = [desired, min_separations, multipliers, frictions].map(|list| bits(list));
+    let numbers = [deltas, min_separations, multipliers, frictions].map(|list| bits(list));
     format!("{pairs:?} {separations:?} {numbers:?} {vectors:?}")
 }
 

@@ -11,7 +11,7 @@ pub const STRETCH_LIMIT: f64 = 1.1;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactParams {
-    /// Desired distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster,
+    /// Contact distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster,
     /// rounder contacts with a visible gap; smaller: tighter contacts, more steps.
     pub delta: Option<f64>,
     /// Minimum separation [m], xi: no step makes a smaller gap. Default a tenth of `delta`; 0 switches it

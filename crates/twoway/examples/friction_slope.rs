@@ -6,7 +6,7 @@
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{BodyContact, HalfSpaceContact, Params, ResolveInput, Resolver};
+use bowknot_twoway::{BodyContact, ContactData, HalfSpaceContact, Params, ResolveInput, Resolver};
 
 const DT: f64 = 0.01;
 const SUBSTEPS: usize = 20;
@@ -73,9 +73,12 @@ fn slide(
     let model_of = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; SHEETS], vec![ground])?;
     let mut params = Params::fast();
     params.contact.friction_model = model;
-    let mut resolver = Resolver::new(model_of, &x, &vec![1.0; x.len()], params)?
-        .with_bodies(vec![BodyContact { friction, ..BodyContact::default() }; SHEETS])?
-        .with_half_spaces(vec![HalfSpaceContact { friction, ..HalfSpaceContact::default() }])?;
+    let contact = ContactData {
+        bodies: vec![BodyContact { friction, ..BodyContact::default() }; SHEETS],
+        half_spaces: vec![HalfSpaceContact { friction, ..HalfSpaceContact::default() }],
+        ..ContactData::default()
+    };
+    let mut resolver = Resolver::with_contact(model_of, &x, &vec![1.0; x.len()], contact, params)?;
 
     // Gravity has the slope: x points downhill.
     let slope = 20f64.to_radians();

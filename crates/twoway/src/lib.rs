@@ -60,7 +60,7 @@ pub use bowknot_stepper as stepper;
 
 pub use adopt::CallEnd;
 pub use backward::{GUARDED_STRETCH, LcpBackward};
-pub use bodies::{BodyContact, ContactSide, ContactTable, HalfSpaceContact, PairFriction};
+pub use bodies::{BodyContact, ContactData, ContactSide, ContactTable, HalfSpaceContact, PairFriction};
 pub use bowknot_constraints::ContactParams;
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use bowknot_stepper::ForwardParams;

@@ -1,7 +1,7 @@
 //! Algorithm 1: the two-way loop, and its default composition.
 
 use crate::backward::LcpBackward;
-use crate::bodies::{BodyContact, HalfSpaceContact, PairFriction};
+use crate::bodies::ContactData;
 use crate::call::{CallInput, check_min_separation};
 use crate::error::ResolveError;
 use crate::filter::filter_slip;
@@ -42,10 +42,10 @@ pub struct Resolver<S = TrustRegionSearch, B = LcpBackward, F = CertifiedForward
 
 impl Resolver {
     /// A resolver for vertices with the given rest positions [m] and masses [kg]. Masses of obstacle vertices
-    /// are ignored. Rest positions determine default lengths, stretch limits, and the desired distance of
+    /// are ignored. Rest positions determine default lengths, stretch limits, and the contact distance of
     /// neighbors: they are those of the undeformed bodies, not of a draped start.
     ///
-    /// By default no edge gets longer than 1.1 times its rest length. [`BodyContact::stretch_limit`] and
+    /// By default no edge gets longer than 1.1 times its rest length. [`BodyContact::stretch_limit`](crate::BodyContact::stretch_limit) and
     /// `params.contact.stretch_limit` set other limits, infinity switches them off.
     ///
     /// # Errors
@@ -56,7 +56,21 @@ impl Resolver {
         masses: &[f64],
         params: Params,
     ) -> Result<Self, ResolveError> {
-        let scene = CollisionScene::new(model, rest, masses, params)?;
+        Self::with_contact(model, rest, masses, ContactData::default(), params)
+    }
+
+    /// A resolver whose bodies and half-spaces have contact data: friction, thickness, contact distance, stretch limit.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`ResolveError::Contact`] with everything that is wrong with `contact`.
+    pub fn with_contact(
+        model: CollisionModel,
+        rest: &[Point],
+        masses: &[f64],
+        contact: ContactData,
+        params: Params,
+    ) -> Result<Self, ResolveError> {
+        let scene = CollisionScene::new(model, rest, masses, contact, params)?;
         let search = TrustRegionSearch::new(&scene);
         Ok(Self::with_stages(scene, search, LcpBackward::default(), CertifiedForward::default()))
     }
@@ -92,33 +106,6 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// A resolver with other stages.
     pub fn with_stages(scene: CollisionScene, search: S, backward: B, forward: F) -> Self {
         Self { scene, state: ResolveState::default(), search, backward, forward }
-    }
-
-    /// Sets the contact data of the bodies, one entry per body of the collision model, obstacles included.
-    ///
-    /// # Errors
-    /// [`ResolveError::Contact`] with every entry out of its range, or a wrong number of entries.
-    pub fn with_bodies(mut self, bodies: Vec<BodyContact>) -> Result<Self, ResolveError> {
-        self.scene.set_bodies(bodies)?;
-        Ok(self)
-    }
-
-    /// Sets the contact data of the half-spaces, one entry per half-space of the collision model.
-    ///
-    /// # Errors
-    /// As [`Self::with_bodies`].
-    pub fn with_half_spaces(mut self, half_spaces: Vec<HalfSpaceContact>) -> Result<Self, ResolveError> {
-        self.scene.set_half_spaces(half_spaces)?;
-        Ok(self)
-    }
-
-    /// Gives pairs of bodies coefficients of friction of their own, in place of the means of both sides'.
-    ///
-    /// # Errors
-    /// As [`Self::with_bodies`]; a side that does not exist, a pair that is named twice.
-    pub fn with_pair_friction(mut self, pairs: &[PairFriction]) -> Result<Self, ResolveError> {
-        self.scene.set_pair_friction(pairs)?;
-        Ok(self)
     }
 
     /// What is fixed for the scene: model, parameters, lengths.

@@ -3,8 +3,8 @@
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector, intersection};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{
-    AcceptedState, BackwardStep, CallInput, CollisionScene, ForwardStep, Params, ResolveInput, ResolveState,
-    Resolver, Search, Statistics,
+    AcceptedState, BackwardStep, CallInput, CollisionScene, ContactData, ForwardStep, Params, ResolveInput,
+    ResolveState, Resolver, Search, Statistics,
 };
 use std::ops::ControlFlow;
 
@@ -120,7 +120,14 @@ impl Scene {
     }
 
     pub fn collision_scene(&self, params: Params) -> CollisionScene {
-        CollisionScene::new(self.model.clone(), &self.x, &vec![0.01; self.x.len()], params).unwrap()
+        CollisionScene::new(
+            self.model.clone(),
+            &self.x,
+            &vec![0.01; self.x.len()],
+            ContactData::default(),
+            params,
+        )
+        .unwrap()
     }
 }
 

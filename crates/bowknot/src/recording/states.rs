@@ -379,7 +379,7 @@ fn time_step(archive: &mut Archive<'_>) -> Result<Option<f64>, IoError> {
     }
 }
 
-/// Ranges are checked where the numbers are used, by [`bowknot_twoway::Resolver::with_bodies`].
+/// Ranges are checked where the numbers are used, by [`bowknot_twoway::Resolver::with_contact`].
 fn body_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<BodyContact>, IoError> {
     let mut column = |name| per(archive, name, count, ["body", "bodies"]);
     let (thickness, delta) = (column("thickness")?, column("delta")?);

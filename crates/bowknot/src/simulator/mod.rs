@@ -151,11 +151,9 @@ impl Simulator {
         let count = world.collision_vertices();
         let (rest_positions, masses) = (&model.rest_positions()[..count], &model.masses()[..count]);
         let contact = world.contact.clone();
-        let resolver = Resolver::new(world.collision.clone(), rest_positions, masses, scene.twoway())
-            .and_then(|resolver| resolver.with_bodies(contact.bodies))
-            .and_then(|resolver| resolver.with_half_spaces(contact.half_spaces))
-            .and_then(|resolver| resolver.with_pair_friction(&contact.pairs))
-            .map_err(|source| SimulationError::resolve(&world, 0, source))?;
+        let resolver =
+            Resolver::with_contact(world.collision.clone(), rest_positions, masses, contact, scene.twoway())
+                .map_err(|source| SimulationError::resolve(&world, 0, source))?;
         let contacts = Contacts::new(&scene.solver.repulsion, &world, &model, &resolver);
         let dynamics = Dynamics::new(model, scene.dynamics()).map_err(SimulationError::Dynamics)?;
         let anchors = vec![Vec::new(); world.pins.len()];

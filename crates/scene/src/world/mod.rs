@@ -37,7 +37,7 @@ use bowknot_dynamics::{Body, DynamicsModel};
 use bowknot_geometry::{BodyFilter, HalfSpace, Point, TETRAHEDRON_EDGES, Vector};
 use bowknot_io::Surface;
 use bowknot_proximity::CollisionModel;
-use bowknot_twoway::{BodyContact, HalfSpaceContact, PairFriction};
+use bowknot_twoway::ContactData;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -60,7 +60,7 @@ pub struct World {
     /// Topology, bodies, filters, half-spaces, with all obstacles there.
     pub collision: CollisionModel,
     /// Contact data of the bodies and half-spaces of the collision model.
-    pub contact: WorldContact,
+    pub contact: ContactData,
     /// The bodies for the dynamics, in the order of `bodies`.
     pub materials: Vec<Body>,
     /// Held or led vertices.
@@ -70,17 +70,6 @@ pub struct World {
     /// Positions of obstacle vertices without their motion [m]; of the other vertices that collide, those at
     /// time 0.
     pub base: Vec<Point>,
-}
-
-/// What bodies bring into their contacts, for the two-way method.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WorldContact {
-    /// One entry per body.
-    pub bodies: Vec<BodyContact>,
-    /// One entry per half-space.
-    pub half_spaces: Vec<HalfSpaceContact>,
-    /// Friction of pairs.
-    pub pairs: Vec<PairFriction>,
 }
 
 /// A body of a [`World`].

@@ -6,8 +6,8 @@ use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
 use bowknot_twoway::lcp::{LcpError, LcpState};
 use bowknot_twoway::{
-    CertifiedForward, CollisionScene, ColoredSweeps, LcpBackward, Params, Resolver, RowSolver, RowSystem,
-    TrustRegionSearch,
+    CertifiedForward, CollisionScene, ColoredSweeps, ContactData, LcpBackward, Params, Resolver, RowSolver,
+    RowSystem, TrustRegionSearch,
 };
 
 /// The default solver over all edges.
@@ -38,7 +38,9 @@ fn call<K: RowSolver + Default>(
     target: &[Point],
     params: &Params,
 ) -> Outcome {
-    let scene = CollisionScene::new(model.clone(), x, &vec![1.0; x.len()], params.clone()).unwrap();
+    let scene =
+        CollisionScene::new(model.clone(), x, &vec![1.0; x.len()], ContactData::default(), params.clone())
+            .unwrap();
     let search = TrustRegionSearch::new(&scene);
     let backward = LcpBackward::with_solver(K::default());
     let mut resolver = Resolver::with_stages(scene, search, backward, CertifiedForward::default());

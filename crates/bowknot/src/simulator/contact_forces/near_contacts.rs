@@ -8,14 +8,14 @@ use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_twoway::{GUARDED_FLOOR, Resolver};
 use rayon::prelude::*;
 
-/// Gap at which the force of a contact vanishes, in the desired distance of the pair. Bodies rest below it.
+/// Gap at which the force of a contact vanishes, in the contact distance of the pair. Bodies rest below it.
 pub(super) const REACH: f64 = 1.2;
 
-/// Gap at which the force becomes infinite, in the way from the minimum separation to the desired distance.
+/// Gap at which the force becomes infinite, in the way from the minimum separation to the contact distance.
 const FLOOR: f64 = 0.4;
 
 /// Height from which down on a pair is a contact even if its features do not face each other, in the way from the minimum
-/// separation to the desired distance. It is a whole one where the rows of the collision stage guard it: what a row holds the
+/// separation to the contact distance. It is a whole one where the rows of the collision stage guard it: what a row holds the
 /// dynamics must know, else it closes the pair in each iteration anew. Higher: tilted normals push bodies that slide.
 const DEEP: f64 = 0.45;
 
@@ -33,8 +33,8 @@ pub(super) struct NearContact {
     sign: f64,
     /// How much of a contact it is [1].
     pub share: f64,
-    /// Desired distance and minimum separation of the pair [m].
-    desired: f64,
+    /// Contact distance and minimum separation of the pair [m].
+    delta: f64,
     least: f64,
     kind: PairKind,
     /// Its place in the list of pairs.
@@ -44,7 +44,7 @@ pub(super) struct NearContact {
 impl NearContact {
     /// The spring of a contact, without what follows from the start of the time step: gap and friction.
     pub fn spring(&self, resolver: &Resolver, newton: &NewtonBodies, stiffness: f64) -> RepulsionSpring {
-        let Self { features, sign, desired, least, kind, place, .. } = *self;
+        let Self { features, sign, delta, least, kind, place, .. } = *self;
         let (scene, state) = (resolver.scene(), resolver.state());
         let contacts = &state.contacts;
         let (separation, pair) = (&contacts.separations[place], &contacts.pairs.pairs()[place]);
@@ -55,14 +55,14 @@ impl NearContact {
         let weights = separation.signed_weights(kind).map(|weight| weight * sign);
         let mut vertices = pair.vertices;
         (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
-        let floor = least + FLOOR * (desired - least);
+        let floor = least + FLOOR * (delta - least);
         RepulsionSpring {
             kind: SpringKind::Contact,
             vertices,
             weights,
             normal,
             offset,
-            reach: REACH * desired,
+            reach: REACH * delta,
             floor,
             start_gap: 0.0,
             stiffness,
@@ -87,9 +87,9 @@ pub(super) fn near_contacts(resolver: &Resolver, newton: &NewtonBodies) -> Vec<N
             let (features, sign) = oriented(scene.features(kind, pair, separation));
             let facing = scene.contact_share(features, &(separation.normal * sign), &state.x)
                 * crossing(&features, &pair.vertices, &state.x);
-            let (desired, least) = (scene.desired_distance(kind, pair), scene.min_separation(kind, pair));
-            let share = facing.max(guarded((separation.distance - least) / (desired - least)));
-            (share > 0.0).then_some(NearContact { features, sign, share, desired, least, kind, place })
+            let (delta, least) = (scene.delta(kind, pair), scene.min_separation(kind, pair));
+            let share = facing.max(guarded((separation.distance - least) / (delta - least)));
+            (share > 0.0).then_some(NearContact { features, sign, share, delta, least, kind, place })
         };
         contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS).filter_map(contact)
     };

@@ -80,7 +80,7 @@ pub struct StepStatistics {
     /// appear, in words.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub absent: BTreeMap<String, Option<String>>,
-    /// Bound on the kinetic energy that separation to the desired distance injected [J], the sum over all
+    /// Bound on the kinetic energy that separation to the contact distance injected [J], the sum over all
     /// collision problems, see [`Statistics::injected_j`].
     #[serde(default)]
     pub injected_energy_j: f64,
