@@ -82,7 +82,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn two_way<F: ForwardStep + 'static>(name: &str, scene: CollisionScene, forward: F) -> Box<dyn Method> {
+fn two_way<F: ForwardStep<TrustRegionSearch> + 'static>(
+    name: &str,
+    scene: CollisionScene,
+    forward: F,
+) -> Box<dyn Method> {
     let search = TrustRegionSearch::new(&scene);
     let backward: LcpBackward = LcpBackward::default();
     Box::new(Composed::new(name, Resolver::with_stages(scene, search, backward, forward)))

@@ -1,6 +1,7 @@
 //! The default forward stage.
 
 use crate::scene::CollisionScene;
+use crate::search::TrustRegionSearch;
 use crate::search::longest_path;
 use crate::stages::{Coverage, ForwardStep, Search};
 use crate::state::ResolveState;
@@ -40,7 +41,7 @@ pub struct CertifiedForward {
     swept_step_failed: bool,
 }
 
-impl ForwardStep for CertifiedForward {
+impl ForwardStep<TrustRegionSearch> for CertifiedForward {
     fn visits_ahead(&self) -> bool {
         true
     }
@@ -55,7 +56,7 @@ impl ForwardStep for CertifiedForward {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut TrustRegionSearch,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
@@ -80,7 +81,7 @@ impl CertifiedForward {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut TrustRegionSearch,
         statistics: &mut Statistics,
     ) {
         let params = &scene.params().solver.forward;
@@ -132,7 +133,7 @@ impl CertifiedForward {
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
-        search: &mut dyn Search,
+        search: &mut TrustRegionSearch,
         statistics: &mut Statistics,
     ) -> bool {
         let params = &scene.params().solver.forward;
@@ -193,7 +194,7 @@ impl CertifiedForward {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut TrustRegionSearch,
         statistics: &mut Statistics,
     ) -> bool {
         let params = &scene.params().solver.forward;

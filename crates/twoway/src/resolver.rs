@@ -102,7 +102,7 @@ impl Resolver {
     }
 }
 
-impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
+impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Resolver<S, B, F> {
     /// A resolver with other stages.
     pub fn with_stages(scene: CollisionScene, search: S, backward: B, forward: F) -> Self {
         Self { scene, state: ResolveState::default(), search, backward, forward }
@@ -287,7 +287,6 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         search.finish(scene, state, statistics);
         backward.finish(scene, state, statistics);
         statistics.steps = state.step;
-        statistics.pairs = search.candidate_count();
         self.describe_end(statistics);
     }
 
@@ -334,11 +333,11 @@ fn timed_project(
 }
 
 /// The forward step, with its seconds less those of searches that it makes.
-fn timed_advance(
-    forward: &mut impl ForwardStep,
+fn timed_advance<S: Search>(
+    forward: &mut impl ForwardStep<S>,
     scene: &CollisionScene,
     state: &mut ResolveState,
-    search: &mut impl Search,
+    search: &mut S,
     statistics: &mut Statistics,
 ) -> StepReport {
     let (timer, before) = (Instant::now(), statistics.seconds.of_search());

@@ -72,7 +72,7 @@ pub fn check(scenario: &Scenario) -> Result<Tally, String> {
 ///
 /// # Errors
 /// The first fault of a step.
-pub fn check_with<S: Search, B: BackwardStep, F: ForwardStep>(
+pub fn check_with<S: Search, B: BackwardStep, F: ForwardStep<S>>(
     scenario: &Scenario,
     judged: Judged,
     stages: impl Fn(CollisionScene) -> Result<Resolver<S, B, F>, ResolveError>,

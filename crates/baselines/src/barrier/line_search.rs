@@ -58,7 +58,7 @@ impl LineSearch {
     }
 }
 
-impl ForwardStep for LineSearch {
+impl<S: Search> ForwardStep<S> for LineSearch {
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.objective.begin(scene, state);
         self.stepper.begin(scene.rest().len());
@@ -68,7 +68,7 @@ impl ForwardStep for LineSearch {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut S,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);

@@ -29,7 +29,7 @@ impl PathSearch {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut impl Search,
         paths: &[Vector],
         path_time: PathTime,
         nearest: f64,

@@ -134,7 +134,7 @@ impl Scene {
 /// The state at the start of a call, with the candidate pairs of its first search.
 pub fn with_candidates(
     collision: &CollisionScene,
-    search: &mut dyn Search,
+    search: &mut impl Search,
     x: &[Point],
     target: &[Point],
 ) -> ResolveState {
@@ -154,7 +154,7 @@ pub fn with_candidates(
 }
 
 /// Resolves, and asserts that no accepted state nor any of 64 states between two of them intersects.
-pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep>(
+pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep<S>>(
     resolver: &mut Resolver<S, B, F>,
     scene: &Scene,
     target: &[Point],

@@ -5,11 +5,13 @@ use super::near::{BLANK, round_up};
 use super::regions::{Regions, longest_path};
 use super::sides::{Sides, range_count, range_of};
 use crate::scene::CollisionScene;
-use crate::stages::AheadVisitor;
 use crate::state::ResolveState;
-use bowknot_geometry::{PairKind, Vector};
+use bowknot_geometry::{PairKind, Separation, Vector};
 use bowknot_proximity::{Candidate, CandidateList, Pair, near_half_spaces, separate_all};
 use rayon::prelude::*;
+
+/// Is called with kind, vertices, contact geometry and minimum separation [m] of a pair, by several threads.
+pub type AheadVisitor<'a> = dyn Fn(PairKind, &[u32; 4], &Separation, f64) + Sync + 'a;
 
 /// Share of the damping at which pairs count as ahead. A pair is left out if the vertices use up less of its
 /// distance: then its slab, which is at least 0.9 times as wide, does not limit them either.

@@ -10,10 +10,11 @@ mod sides;
 pub(crate) use regions::longest_path;
 
 use crate::scene::CollisionScene;
-use crate::stages::{AheadVisitor, Coverage, Search};
+use crate::stages::{Coverage, Search};
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use ahead::AheadPairs;
+pub use ahead::AheadVisitor;
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_proximity::{CandidateList, PairList, ProximitySearch};
@@ -140,37 +141,11 @@ impl TrustRegionSearch {
     }
 }
 
-impl Search for TrustRegionSearch {
-    fn begin(&mut self, scene: &CollisionScene, state: &mut ResolveState, complete: bool) {
-        let forward = &scene.params().solver.forward;
-        // The velocity filter looks at pairs that are still far, and so do isotropic bounds.
-        let sees_all = scene.friction_model() == FrictionModel::Filter || forward.bound == Bound::Isotropic;
-        self.complete = complete || sees_all || self.rule == TrustRegionRule::Uniform;
-        self.requested |= self.complete;
-        self.near.begin(state);
-    }
-
-    fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        let timer = Instant::now();
-        if state.step == 0 {
-            self.search_after_flight(scene, state);
-        }
-        match self.rule {
-            TrustRegionRule::Uniform => self.cover_uniform(scene, state, statistics),
-            TrustRegionRule::PerVertex if self.requested || self.left => {
-                self.cover_paths(scene, state, |v| state.y[v] - state.x[v], statistics);
-            }
-            // A list of an earlier call holds as long as the vertices are in their trust regions.
-            TrustRegionRule::PerVertex if state.step == 0 => {
-                self.cover_paths(scene, state, |_| Vector::zeros(), statistics);
-            }
-            TrustRegionRule::PerVertex => {}
-        }
-        statistics.seconds.search += timer.elapsed().as_secs_f64();
-        self.select(scene, state, statistics);
-    }
-
-    fn update_among(
+/// What [`CertifiedForward`](crate::CertifiedForward) and [`Resolver::adopt`](crate::Resolver::adopt) ask for.
+impl TrustRegionSearch {
+    /// As [`Self::update`], for a caller who knows the pairs: all that are within contact range at `state.x` are among
+    /// `near`. It need not search then.
+    pub fn update_among(
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
@@ -186,7 +161,9 @@ impl Search for TrustRegionSearch {
         statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
     }
 
-    fn cover(
+    /// Makes trust regions hold the moves along `displacements` [m] from `state.x`, each at most
+    /// `solver.forward.trust_region_max` long, and the candidate pairs valid for them.
+    pub fn cover(
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
@@ -205,7 +182,9 @@ impl Search for TrustRegionSearch {
         }
     }
 
-    fn visit_ahead(
+    /// Calls `visit` with every pair that is not in `state.contacts` and could limit such moves. There is
+    /// none if `state.contacts` is complete.
+    pub fn visit_ahead(
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
@@ -218,7 +197,11 @@ impl Search for TrustRegionSearch {
         }
     }
 
-    fn visit_flight(
+    /// Calls `visit` with the pairs within bodies that are not in `state.contacts` and could limit a step in
+    /// free flight along `displacements` [m] from x: one in which no body comes near another or a half-space,
+    /// and the vertices of each body move almost alike. Returns whether the step is one. It must be a function
+    /// of x and the displacements.
+    pub fn visit_flight(
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
@@ -261,7 +244,9 @@ impl Search for TrustRegionSearch {
         true
     }
 
-    fn take_flight(
+    /// Notes that all vertices will take this step from x, all the way. `largest_coordinate` is that of the
+    /// step [m].
+    pub fn take_flight(
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
@@ -272,7 +257,10 @@ impl Search for TrustRegionSearch {
         self.search.note_moved();
     }
 
-    fn visit_swept(
+    /// Calls `visit` with every pair that is not in `state.contacts` and could meet while the vertices move
+    /// from x along `displacements`, all at the same path time, and deviate from there by at most `deviations`
+    /// [m].
+    pub fn visit_swept(
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
@@ -291,6 +279,37 @@ impl Search for TrustRegionSearch {
         self.left = true;
         self.requested |= self.flight.drift;
         statistics.searches += 1;
+    }
+}
+
+impl Search for TrustRegionSearch {
+    fn begin(&mut self, scene: &CollisionScene, state: &mut ResolveState, complete: bool) {
+        let forward = &scene.params().solver.forward;
+        // The velocity filter looks at pairs that are still far, and so do isotropic bounds.
+        let sees_all = scene.friction_model() == FrictionModel::Filter || forward.bound == Bound::Isotropic;
+        self.complete = complete || sees_all || self.rule == TrustRegionRule::Uniform;
+        self.requested |= self.complete;
+        self.near.begin(state);
+    }
+
+    fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
+        let timer = Instant::now();
+        if state.step == 0 {
+            self.search_after_flight(scene, state);
+        }
+        match self.rule {
+            TrustRegionRule::Uniform => self.cover_uniform(scene, state, statistics),
+            TrustRegionRule::PerVertex if self.requested || self.left => {
+                self.cover_paths(scene, state, |v| state.y[v] - state.x[v], statistics);
+            }
+            // A list of an earlier call holds as long as the vertices are in their trust regions.
+            TrustRegionRule::PerVertex if state.step == 0 => {
+                self.cover_paths(scene, state, |_| Vector::zeros(), statistics);
+            }
+            TrustRegionRule::PerVertex => {}
+        }
+        statistics.seconds.search += timer.elapsed().as_secs_f64();
+        self.select(scene, state, statistics);
     }
 
     fn update_swept(
@@ -330,6 +349,7 @@ impl Search for TrustRegionSearch {
             statistics.seconds.search += timer.elapsed().as_secs_f64();
         }
         self.select(scene, state, statistics);
+        statistics.pairs = self.candidates.len();
     }
 
     fn request(&mut self) {
@@ -341,9 +361,5 @@ impl Search for TrustRegionSearch {
             TrustRegionRule::PerVertex => Coverage::TrustRegions(&self.regions.balls),
             TrustRegionRule::Uniform => Coverage::Distance(self.covered_distance),
         }
-    }
-
-    fn candidate_count(&self) -> usize {
-        self.candidates.len()
     }
 }
