@@ -6,7 +6,7 @@
 
 use crate::error::LcpError;
 use crate::info::LcpInfo;
-use crate::kernels::{relax_friction, relax_limit, relax_row};
+use crate::kernels::{FrictionRule, relax_friction, relax_limit, relax_row};
 use crate::params::LcpParams;
 use crate::problem::LcpProblem;
 use crate::schedule::Schedule;
@@ -327,11 +327,11 @@ where
 
     #[inline(always)]
     fn relax_friction(&self, index: usize) -> f64 {
+        let rule = FrictionRule { relaxation: self.params.relaxation, bound: self.params.friction_bound };
         relax_friction::<RESIDUAL>(
             &self.problem.friction().rows[index],
             self.problem.weights(),
-            self.params.relaxation,
-            self.params.friction_bound,
+            rule,
             &self.y,
             &self.lambda,
             &self.friction,

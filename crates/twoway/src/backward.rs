@@ -395,6 +395,7 @@ impl<K: RowSolver> LcpBackward<K> {
     /// Solves for the contacts and for those edges that act or could come to act.
     fn solve_live(&mut self, scene: &CollisionScene, state: &ResolveState) -> Result<(), lcp::LcpError> {
         let parts = LiveParts {
+            weights: &self.weights,
             edges: &self.edges,
             live: &mut self.live,
             touched: &mut self.touched,
@@ -402,9 +403,8 @@ impl<K: RowSolver> LcpBackward<K> {
             damped: self.proximal.damped(),
             free: &self.free,
         };
-        let (weights, y) = (&self.weights, &mut self.y);
-        let (lambda, friction) = (&mut self.lambda, &mut self.friction);
-        let mut rows = LiveRows::new(scene, state, weights, &self.contacts, parts, y, lambda, friction)?;
+        let (y, lambda, friction) = (&mut self.y, &mut self.lambda, &mut self.friction);
+        let mut rows = LiveRows::new(scene, state, &self.contacts, parts, y, lambda, friction)?;
         let solved = self.solver.solve_live(&mut rows);
         rows.finish();
         solved

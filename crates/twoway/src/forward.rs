@@ -8,7 +8,7 @@ use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::waits::{Wait, waits};
 use bowknot_geometry::{PairKind, Separation, Vector};
-use bowknot_stepper::{Bound, StepReport, Stepper, TrustRegionRule};
+use bowknot_stepper::{Bound, StepReport, Stepper, TrustRegionRule, Tubes};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -143,8 +143,9 @@ impl CertifiedForward {
         }
         let (stepper, damping) = (&self.stepper, params.damping);
         let displacements = stepper.displacements();
+        let tubes = Tubes { paths: displacements, radii: &[] };
         let stays_open = |kind, vertices: &[u32; 4], at: &Separation, least: f64| {
-            stepper.stays_open(kind, vertices, at, least, displacements, |_| 0.0, damping)
+            stepper.stays_open(kind, vertices, at, least, &tubes, damping)
         };
         let contacts = &state.contacts;
         for kind in PairKind::ALL {
@@ -227,15 +228,15 @@ impl CertifiedForward {
         }
         for round in 1..=MAX_SWEPT_ROUNDS {
             self.assume_step_sizes();
-            let Self { stepper, paths, tubes, .. } = &*self;
-            let frozen = AtomicUsize::new(0);
+            let Self { stepper, paths, tubes: radii, .. } = &*self;
+            let (tubes, frozen) = (Tubes { paths, radii }, AtomicUsize::new(0));
             search.visit_swept(
                 scene,
                 state,
                 paths,
-                tubes,
+                radii,
                 &|kind, vertices, at, least| {
-                    if stepper.limit_by_moving_plane(kind, vertices, at, least, paths, tubes, damping) {
+                    if stepper.limit_by_moving_plane(kind, vertices, at, least, &tubes, damping) {
                         frozen.fetch_add(1, Ordering::Relaxed);
                     }
                 },
@@ -306,8 +307,8 @@ impl CertifiedForward {
         statistics: &mut Statistics,
     ) {
         let contacts = state.contacts.as_contacts();
-        statistics.frozen_pairs +=
-            self.stepper.limit_by_moving_planes(&contacts, &self.paths, &self.tubes, damping);
+        let tubes = Tubes { paths: &self.paths, radii: &self.tubes };
+        statistics.frozen_pairs += self.stepper.limit_by_moving_planes(&contacts, &tubes, damping);
         self.limit_bodies(scene, state);
     }
 

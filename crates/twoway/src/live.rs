@@ -186,6 +186,8 @@ pub struct LiveRows<'a> {
 /// What [`LiveRows`] is made of, beside what every solver gets.
 #[derive(Debug)]
 pub(crate) struct LiveParts<'a> {
+    /// Inverse weights of the vertices [1].
+    pub weights: &'a [f64],
     pub edges: &'a EdgeLimits,
     pub live: &'a mut LiveEdges,
     /// Vertices whose y may differ from the target.
@@ -214,7 +216,6 @@ impl<'a> LiveRows<'a> {
     pub(crate) fn new(
         scene: &'a CollisionScene,
         state: &'a ResolveState,
-        weights: &'a [f64],
         contacts: &'a ContactRows,
         parts: LiveParts<'a>,
         y: &'a mut [Vector],
@@ -222,7 +223,7 @@ impl<'a> LiveRows<'a> {
         friction: &'a mut [TangentVector],
     ) -> Result<Self, LcpError> {
         let mut system = LcpProblem::new(
-            weights,
+            parts.weights,
             ConstraintSet::new(&contacts.rows, contacts.schedule()),
             ConstraintSet::default(),
             ConstraintSet::serial(&contacts.friction),

@@ -75,7 +75,8 @@ impl<S: Search> ForwardStep<S> for LineSearch {
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
         let range = self.objective.largest_range(scene);
-        self.search.list(scene, state, search, &self.paths, PathTime::Common, range, statistics);
+        self.search.nearest = range;
+        self.search.list(scene, state, search, &self.paths, PathTime::Common, statistics);
         let mut step = earliest(&self.ccd, scene, state, &self.paths);
         let still = |v: usize| state.is_movable(v) || self.paths[v] == Vector::zeros();
         if (0..self.paths.len()).all(still) {

@@ -66,7 +66,7 @@ impl<S: Search> ForwardStep<S> for EarliestImpact {
         self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        self.search.list(scene, state, search, &self.paths, PathTime::Common, 0.0, statistics);
+        self.search.list(scene, state, search, &self.paths, PathTime::Common, statistics);
         let time = earliest(&self.ccd, scene, state, &self.paths);
         for v in 0..self.paths.len() {
             self.stepper.limit(v, time);

@@ -112,7 +112,7 @@ impl<S: Search> ForwardStep<S> for PerVertexImpact {
         }
         self.limit_bodies(scene, state);
         self.shorten();
-        self.search.list(scene, state, search, &self.paths, PathTime::PerVertex, 0.0, statistics);
+        self.search.list(scene, state, search, &self.paths, PathTime::PerVertex, statistics);
         self.changed.fill(true);
         for round in 1..=Self::MAX_ROUNDS {
             let common = self.limit(scene, state);

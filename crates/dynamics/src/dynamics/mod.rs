@@ -45,7 +45,7 @@ use bowknot_geometry::{Point, Vector};
 use conservation::EndOfStep;
 use newton::bodies::{Answer, Bodies, BodyEnergies, Lost};
 use newton::cpu::CpuBodies;
-use newton::device::{Beginning, conserve_momentum, on_device};
+use newton::device::{Beginning, DeviceTarget, conserve_momentum, on_device};
 use newton::momentum::free_groups;
 use newton::state::{Course, EvaluationCache, Newton, Step, Workspace};
 use rayon::prelude::*;
@@ -279,8 +279,9 @@ impl Dynamics {
         let Workspace { x, imposed, trial, solver, .. } = &mut *work;
         if let Some(backend) = solver.newton() {
             let beginning = Beginning { iterate: x, free: &free, imposed, watched: &watched };
-            let target = sets_trial.then_some(trial.as_mut_slice());
-            match on_device(model, params, step, course, backend, beginning, target, &mut over) {
+            let target =
+                DeviceTarget { backend, beginning, trial: sets_trial.then_some(trial.as_mut_slice()) };
+            match on_device(model, params, step, course, target, &mut over) {
                 Ok(done) => {
                     if sets_trial {
                         let groups = free_groups(model, repulsion, &free);

@@ -1,8 +1,8 @@
 //! Pairs that are not near, but that vertices could reach in one step: candidates, and what a swept search
 //! finds. They are visited as they are found, and not stored.
 
-use super::near::{BLANK, round_up};
-use super::regions::{Regions, longest_path};
+use super::near::{BLANK, Listed, round_up};
+use super::regions::longest_path;
 use super::sides::{Sides, range_count, range_of};
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
@@ -46,29 +46,26 @@ pub(super) struct AheadPairs {
 
 impl AheadPairs {
     /// Calls `visit` with all candidate pairs that are not pairs of `state.contacts` and that could limit a
-    /// step along `displacements` [m], with their contact geometry at x. `rounding`: by how much distances may
-    /// be below their bounds [m].
+    /// step along `displacements` [m], with their contact geometry at x.
     pub fn visit(
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
-        candidates: &CandidateList,
-        regions: &Regions,
-        rounding: f64,
+        listed: Listed<'_>,
         displacements: &[Vector],
         visit: &AheadVisitor<'_>,
     ) {
         let share = SHARE * scene.params().solver.forward.damping.min(1.0);
-        self.set_motions(scene, state, regions, rounding, displacements, share);
+        self.set_motions(scene, state, listed, displacements, share);
         let (motions, topology) = (&self.motions, scene.model().topology());
-        self.sides.fill(topology, candidates, |vertices| {
+        self.sides.fill(topology, listed.candidates, |vertices| {
             let largest = vertices.iter().map(|&v| motions[v as usize]).fold(Motion::default(), Motion::max);
             largest.offset + largest.travel
         });
         // Rounded down.
         let bound_share = share as f32 * (1.0 - f32::EPSILON);
         let sides = &self.sides;
-        visit_candidates(scene, state, candidates, visit, |kind, a, candidate| {
+        visit_candidates(scene, state, listed.candidates, visit, |kind, a, candidate| {
             let [own, other] = sides.of(kind);
             candidate.bound * bound_share <= (own[a] + other[candidate.element as usize]) * LARGER
         });
@@ -97,8 +94,7 @@ impl AheadPairs {
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
-        regions: &Regions,
-        rounding: f64,
+        Listed { regions, rounding, .. }: Listed<'_>,
         displacements: &[Vector],
         share: f64,
     ) {

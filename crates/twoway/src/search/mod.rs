@@ -20,8 +20,8 @@ use bowknot_geometry::{PairKind, Vector};
 use bowknot_proximity::{CandidateList, PairList, ProximitySearch};
 use bowknot_stepper::{Bound, TrustRegionRule};
 use flight::Flight;
-use near::NearPairs;
 pub use near::{GUARDED, GUARDED_FLOOR, KNOWN};
+use near::{Listed, NearPairs};
 use regions::Regions;
 use std::time::Instant;
 
@@ -136,7 +136,8 @@ impl TrustRegionSearch {
     fn select(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let timer = Instant::now();
         let Self { near, candidates, regions, flight, complete, .. } = self;
-        near.select(scene, state, candidates, regions, flight.rounding, *complete, statistics);
+        let listed = Listed { candidates, regions, rounding: flight.rounding };
+        near.select(scene, state, listed, *complete, statistics);
         statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
     }
 }
@@ -193,7 +194,8 @@ impl TrustRegionSearch {
     ) {
         if !self.complete {
             let Self { ahead, candidates, regions, flight, .. } = self;
-            ahead.visit(scene, state, candidates, regions, flight.rounding, displacements, visit);
+            let listed = Listed { candidates, regions, rounding: flight.rounding };
+            ahead.visit(scene, state, listed, displacements, visit);
         }
     }
 
@@ -225,20 +227,13 @@ impl TrustRegionSearch {
         let bodies = scene.model().vertex_body();
         if !candidates.is_empty() {
             // Pairs of different bodies may be listed with wrong bounds; they do not matter.
-            ahead.visit(
-                scene,
-                state,
-                candidates,
-                regions,
-                flight.rounding,
-                &relative,
-                &|kind, vertices, at, least| {
-                    let body = |side: usize| bodies[vertices[side] as usize];
-                    if kind != PairKind::VertexHalfSpace && body(0) == body(kind.side_a()) {
-                        visit(kind, vertices, at, least);
-                    }
-                },
-            );
+            let listed = Listed { candidates, regions, rounding: flight.rounding };
+            ahead.visit(scene, state, listed, &relative, &|kind, vertices, at, least| {
+                let body = |side: usize| bodies[vertices[side] as usize];
+                if kind != PairKind::VertexHalfSpace && body(0) == body(kind.side_a()) {
+                    visit(kind, vertices, at, least);
+                }
+            });
         }
         flight.relative = relative;
         true

@@ -17,6 +17,15 @@ use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CandidateList, Pair, PairList, near_half_spaces, separate_all};
 use rayon::prelude::*;
 
+/// Candidate pairs, and what holds for those that are not listed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Listed<'a> {
+    pub candidates: &'a CandidateList,
+    pub regions: &'a Regions,
+    /// By how much distances may be below their bounds [m].
+    pub rounding: f64,
+}
+
 /// Pairs whose data one task carries over, and vertices that one task looks at.
 const CHUNK: usize = 1024;
 /// Pairs whose geometry is computed at once.
@@ -72,20 +81,17 @@ impl NearPairs {
     }
 
     /// Makes the candidates that are within contact range at x the pairs of `state.contacts`: what the other
-    /// stages see does not depend on which pairs are listed. `rounding`: by how much distances may be below
-    /// their bounds [m]. `complete`: all candidates.
+    /// stages see does not depend on which pairs are `listed`. `complete`: all candidates.
     pub fn select(
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        candidates: &CandidateList,
-        regions: &Regions,
-        rounding: f64,
+        listed: Listed<'_>,
         complete: bool,
         statistics: &mut Statistics,
     ) {
-        let model = scene.model();
-        self.set_reach(scene, state, regions, rounding, candidates);
+        let (model, Listed { candidates, regions, .. }) = (scene.model(), listed);
+        self.set_reach(scene, state, listed);
         self.keep(&mut state.contacts);
         let x = state.x.as_slice();
         let selection = Selection { scene, x, moved: &self.moved, old: &self.old, complete };
@@ -160,9 +166,7 @@ impl NearPairs {
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
-        regions: &Regions,
-        rounding: f64,
-        candidates: &CandidateList,
+        Listed { candidates, regions, rounding }: Listed<'_>,
     ) {
         let (model, count) = (scene.model(), state.x.len());
         self.reach.resize(count, 0.0);

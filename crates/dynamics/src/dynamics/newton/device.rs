@@ -266,16 +266,21 @@ pub fn conserve_momentum(
     }
 }
 
-/// Lets `run` work on the bodies on a device, from a beginning. If there is a `trial`, it becomes the last one, by node,
-/// which then is the last target.
+/// A target that a device computes.
+pub struct DeviceTarget<'a> {
+    pub backend: &'a mut dyn NewtonBackend,
+    pub beginning: Beginning<'a>,
+    /// Becomes the last trial, by node, which then is the last target.
+    pub trial: Option<&'a mut [Vector]>,
+}
+
+/// Lets `run` work on the bodies on a device, from a beginning.
 pub fn on_device<T>(
     model: &DynamicsModel,
     params: &DynamicsParams,
     step: &Step,
     course: &mut Course,
-    backend: &mut dyn NewtonBackend,
-    beginning: Beginning<'_>,
-    trial: Option<&mut [Vector]>,
+    DeviceTarget { backend, beginning, trial }: DeviceTarget<'_>,
     run: &mut dyn FnMut(&mut dyn Bodies, &mut Course) -> Answer<T>,
 ) -> Answer<T> {
     let on_device = match course.on_device.take() {
