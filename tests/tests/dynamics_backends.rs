@@ -1,7 +1,8 @@
 //! Whole simulations with the dynamics on the twins of the kernels: they go as on the CPU.
 //!
-//! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the CPU with more
-//! accurate linear solves and with another preconditioner, which should make no difference either.
+//! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the
+//! CPU with more accurate linear solves and with another preconditioner, which should make no difference
+//! either.
 //!
 //! `--ignored` counts iterations in larger scenes and prints a table; see `docs/gpu/dynamics.md`.
 
@@ -495,7 +496,8 @@ fn solves_stay_on_the_device_while_bodies_sleep_and_after() {
 #[ignore = "it takes minutes"]
 fn iterations_in_scenes() {
     println!(
-        "| scene | nodes | time steps | systems | CPU: two-level | block-Jacobi | twins: block-Jacobi | groups | centers apart mm |"
+        "| scene | nodes | time steps | systems | CPU: two-level | block-Jacobi | twins: block-Jacobi | \
+         groups | centers apart mm |"
     );
     for case in LARGE {
         let jacobi = ["solver.newton.preconditioner=\"block-jacobi\""];

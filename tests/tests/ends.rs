@@ -1,5 +1,5 @@
-//! The end of a call on a device: its contacts are those that a search on the CPU finds, and a state that intersects is
-//! never accepted.
+//! The end of a call on a device: its contacts are those that a search on the CPU finds, and a state that
+//! intersects is never accepted.
 
 use bowknot::check::StateOptions;
 use bowknot::gpu::{Device, Engine, GpuError, GpuResolveError, TwinEngine, resolve_on};
@@ -215,8 +215,8 @@ fn compared(scene: &Scene, time_steps: usize, fault: Fault) -> Compared {
     *compared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Everything that collides, on a ground and around a ball: sheets of which two do not meet, with and without a thickness,
-/// strands, and grains on them. One sheet falls asleep before another falls on it.
+/// Everything that collides, on a ground and around a ball: sheets of which two do not meet, with and without
+/// a thickness, strands, and grains on them. One sheet falls asleep before another falls on it.
 const EVERYTHING: &str = r#"
 [simulation]
 dt = 0.01

@@ -74,9 +74,9 @@ pub struct SelectedPair {
 /// Contact rows in the order in which they are swept. They are refilled in every backward step and keep their
 /// buffers.
 ///
-/// Rows of one color share no movable vertex. The order is for convergence as much as for threads: in the order
-/// of the pair list, or of clusters of 128 of its rows, few sweeps leave a bias along the mesh, and three layers
-/// of cloth that stick to a slope creep 140 times as far.
+/// Rows of one color share no movable vertex. The order is for convergence as much as for threads: in the
+/// order of the pair list, or of clusters of 128 of its rows, few sweeps leave a bias along the mesh, and
+/// three layers of cloth that stick to a slope creep 140 times as far.
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows {
     /// Index of each row's pair in the pair list.
@@ -93,8 +93,8 @@ pub struct ContactRows {
 }
 
 impl ContactRows {
-    /// Fills in the rows of the `selected` pairs, which are in the order of the list. `movable[v]` tells which
-    /// vertices a row may move; only they count for colors. Rows are not prepared yet, see
+    /// Fills in the rows of the `selected` pairs, which are in the order of the list. `movable[v]` tells
+    /// which vertices a row may move; only they count for colors. Rows are not prepared yet, see
     /// [`bowknot_lcp::prepare_rows`].
     pub fn fill(
         &mut self,

@@ -16,9 +16,9 @@ impl DeltaRule {
     /// The contact distance [m] of a pair that has the distance `gap` when it first becomes a candidate in a
     /// call, and whether it was lowered because the pair are neighbors in a fine mesh.
     ///
-    /// The contact distance of neighbors, pairs of one connected component, is at most half of their rest distance:
-    /// otherwise `delta` would tear a fine mesh apart. A pair that starts closer than its contact distance opens by at most `growth`
-    /// per call.
+    /// The contact distance of neighbors, pairs of one connected component, is at most half of their rest
+    /// distance: otherwise `delta` would tear a fine mesh apart. A pair that starts closer than its contact
+    /// distance opens by at most `growth` per call.
     pub fn of(
         &self,
         model: &CollisionModel,

@@ -422,8 +422,9 @@ impl ProximitySearch {
 }
 
 /// Searches for one kind of pair: deformable elements of side *a* against all elements of side *b*, and
-/// elements of obstacles of side *a* against deformable ones. Trees are given as (side a, side b); leaves are numbers, as many
-/// as the largest deformable tree has leaves, and those of the obstacles that are searched for.
+/// elements of obstacles of side *a* against deformable ones. Trees are given as (side a, side b); leaves are
+/// numbers, as many as the largest deformable tree has leaves, and those of the obstacles that are searched
+/// for.
 fn search_kind<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     collisions: CollisionMatrix,

@@ -58,8 +58,8 @@ impl Material {
         }
     }
 
-    /// Largest ratio of an edge's length to its rest length [1], if the material says: that of a cloth. Solids have none: their
-    /// own elasticity limits how far they stretch.
+    /// Largest ratio of an edge's length to its rest length [1], if the material says: that of a cloth.
+    /// Solids have none: their own elasticity limits how far they stretch.
     pub fn stretch_limit(&self) -> Option<f64> {
         match self {
             Self::Cloth(material) => Some(material.stretch_limit),

@@ -38,8 +38,8 @@ pub struct StepReport {
     pub slowest: Option<u32>,
     /// Largest |alpha (y - x)| [m].
     pub largest_move: f64,
-    /// Largest remaining distance of a vertex that no pair holds back [m]. The caller knows which vertices these are;
-    /// [`Stepper::advance`] leaves it 0, and the next one as well.
+    /// Largest remaining distance of a vertex that no pair holds back [m]. The caller knows which vertices
+    /// these are; [`Stepper::advance`] leaves it 0, and the next one as well.
     pub unhindered: f64,
     /// The same of prescribed vertices alone [m].
     pub unhindered_lag: f64,
@@ -66,7 +66,8 @@ pub struct Stepper {
     largest_coordinate: f64,
 }
 
-/// Where vertices are in a long step: along their paths, all at the same path time t in [0, 1], and not far from there.
+/// Where vertices are in a long step: along their paths, all at the same path time t in [0, 1], and not far
+/// from there.
 #[derive(Clone, Copy, Debug)]
 pub struct Tubes<'a> {
     /// The path of each vertex [m].
@@ -128,9 +129,9 @@ impl Stepper {
         not_finite
     }
 
-    /// Lets no vertex travel farther than `longest(vertex)` [m]. Call it before the pairs limit the step: they
-    /// then share their gaps between the travels that remain. `obstacle_vertices` and the groups, of which
-    /// there are `group_count`, still move as one, see [`Self::limit_by_bodies`].
+    /// Lets no vertex travel farther than `longest(vertex)` [m]. Call it before the pairs limit the step:
+    /// they then share their gaps between the travels that remain. `obstacle_vertices` and the groups, of
+    /// which there are `group_count`, still move as one, see [`Self::limit_by_bodies`].
     pub fn cap_travel(
         &mut self,
         model: &CollisionModel,
@@ -306,8 +307,8 @@ impl Stepper {
         separation.width > rounding.frozen && closing <= allowed
     }
 
-    /// Largest coordinate of positions and targets of this step, at least twice the longest displacement [m]: what the bounds
-    /// of [`Rounding`] hold for.
+    /// Largest coordinate of positions and targets of this step, at least twice the longest displacement [m]:
+    /// what the bounds of [`Rounding`] hold for.
     pub fn largest_coordinate(&self) -> f64 {
         self.largest_coordinate
     }
@@ -529,7 +530,8 @@ fn advance_chunk(
     report
 }
 
-/// The report of two ranges of vertices, of which `a` is the first. Of equally slow vertices the first counts.
+/// The report of two ranges of vertices, of which `a` is the first. Of equally slow vertices the first
+/// counts.
 fn join(a: StepReport, b: StepReport) -> StepReport {
     let slowest = if b.remaining > a.remaining { b } else { a };
     StepReport {

@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         |k: usize, default: usize| std::env::args().nth(k).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (cells, frames) = (argument(1, 30), argument(2, 50));
     println!(
-        "means over {frames} frames of {SHEETS} sheets of {cells} x {cells} cells; downhill: speed of each at the end"
+        "means over {frames} frames of {SHEETS} sheets of {cells} x {cells} cells; downhill: speed of each \
+         at the end"
     );
     println!(
         "model    mu    steps  searches  rows  friction  backward ms  total ms  largest slip mm  downhill m/s"
@@ -111,7 +112,8 @@ fn slide(
     let speeds: Vec<String> = v.chunks(n * n).map(|sheet| format!("{:.4}", speed(sheet))).collect();
     let [steps, searches, rows, rough, backward, total] = sums;
     println!(
-        "{:7} {friction:4.1} {steps:8.2} {searches:9.2} {rows:5.0} {rough:9.0} {backward:12.2} {total:9.2} {:17.4}  {}",
+        "{:7} {friction:4.1} {steps:8.2} {searches:9.2} {rows:5.0} {rough:9.0} {backward:12.2} {total:9.2} \
+         {:17.4}  {}",
         format!("{model:?}"),
         1e3 * slip,
         speeds.join(" "),

@@ -117,8 +117,8 @@ fn resolver(cloth: &Cloth, x: &[Point], friction: f64) -> Result<Resolver, Box<d
     Ok(Resolver::with_contact(model, x, &vec![cloth.mass; x.len()], contact, Params::fast())?)
 }
 
-/// Simulates frames of 1/60 s, each of ten substeps. Returns the cloth, the two-way steps of all substeps, and
-/// the smallest gap [m].
+/// Simulates frames of 1/60 s, each of ten substeps. Returns the cloth, the two-way steps of all substeps,
+/// and the smallest gap [m].
 pub fn simulate(cells: usize, friction: f64, frames: usize) -> Result<(Cloth, usize, f64), Box<dyn Error>> {
     let dt = 1.0 / 600.0;
     let mut cloth = Cloth::sheet(cells + 1, 1.0, 0.75);

@@ -29,8 +29,8 @@ pub struct CallEnd<'a> {
 
 impl<B: BackwardStep, F: ForwardStep<TrustRegionSearch>> Resolver<TrustRegionSearch, B, F> {
     /// Makes [`Self::state`] that of a `call` which something else has made: pairs in range at its end, their
-    /// contact geometry, and what they carry. Adds to `statistics` what [`Self::resolve_with`] adds at the end
-    /// of a call, but for residuals and counts of the stages. Entries of pairs that are out of range are
+    /// contact geometry, and what they carry. Adds to `statistics` what [`Self::resolve_with`] adds at the
+    /// end of a call, but for residuals and counts of the stages. Entries of pairs that are out of range are
     /// dropped: nothing presses there.
     ///
     /// # Errors

@@ -1,17 +1,18 @@
 //! Prescribed vertices that do not get on because pairs hold them back.
 //!
-//! The rows of the backward step take prescribed vertices to be at their targets. Where one cannot get there, rows of
-//! contacts and of edges contradict each other: cloth is to follow its pins into an obstacle. No target then satisfies
-//! all rows, and multipliers grow from step to step. So after some steps without progress the rows take such a vertex to
-//! be where it is. The forward step goes on to move it toward its target; as soon as it gets on, the rows believe it.
+//! The rows of the backward step take prescribed vertices to be at their targets. Where one cannot get there,
+//! rows of contacts and of edges contradict each other: cloth is to follow its pins into an obstacle. No
+//! target then satisfies all rows, and multipliers grow from step to step. So after some steps without
+//! progress the rows take such a vertex to be where it is. The forward step goes on to move it toward its
+//! target; as soon as it gets on, the rows believe it.
 
 use crate::index_set::IndexSet;
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 use bowknot_geometry::Point;
 
-/// Number of steps without progress after which a vertex is blocked: fewer than the 24 steps of a call that another
-/// Newton iteration follows.
+/// Number of steps without progress after which a vertex is blocked: fewer than the 24 steps of a call that
+/// another Newton iteration follows.
 const MAX_STEPS_WITHOUT_PROGRESS: usize = 6;
 
 /// Smallest decrease of the distance to the target that counts as progress, in mean edge lengths.

@@ -90,8 +90,8 @@ impl ContactTable {
     /// The table of a scene.
     ///
     /// # Errors
-    /// [`ResolveError::Contact`] with every entry out of its range, a wrong number of entries, a side of a pair that does
-    /// not exist, a pair that is named twice.
+    /// [`ResolveError::Contact`] with every entry out of its range, a wrong number of entries, a side of a
+    /// pair that does not exist, a pair that is named twice.
     pub(crate) fn new(model: &CollisionModel, data: ContactData) -> Result<Self, ResolveError> {
         let mut checks = Checks::default();
         let bodies = one_each(&mut checks, "bodies", data.bodies, model.bodies().len());

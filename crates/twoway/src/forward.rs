@@ -127,8 +127,9 @@ impl CertifiedForward {
     /// limited yet.
     ///
     /// In free flight no two bodies come near each other as long as all vertices go all the way. Within a
-    /// body, the slab of each pair moves along with the body: the pair cannot meet if its sides together close
-    /// less than the slab, see [`Stepper::limit_by_moving_planes`]. One pair that could meet ends the flight.
+    /// body, the slab of each pair moves along with the body: the pair cannot meet if its sides together
+    /// close less than the slab, see [`Stepper::limit_by_moving_planes`]. One pair that could meet ends the
+    /// flight.
     fn fly(
         &mut self,
         scene: &CollisionScene,
@@ -273,8 +274,8 @@ impl CertifiedForward {
         vertices.for_each(|(v, held)| *held = stepper.alpha(v) < stepper.cap(v));
     }
 
-    /// Largest distance that a vertex has left after this step although no pair holds it back, and the largest of a
-    /// prescribed vertex [m].
+    /// Largest distance that a vertex has left after this step although no pair holds it back, and the
+    /// largest of a prescribed vertex [m].
     fn unhindered(&self, state: &ResolveState) -> (f64, f64) {
         let left = |v: usize| {
             let is_held = self.held.get(v).is_some_and(|held| *held);

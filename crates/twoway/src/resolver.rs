@@ -45,8 +45,9 @@ impl Resolver {
     /// are ignored. Rest positions determine default lengths, stretch limits, and the contact distance of
     /// neighbors: they are those of the undeformed bodies, not of a draped start.
     ///
-    /// By default no edge gets longer than 1.1 times its rest length. [`BodyContact::stretch_limit`](crate::BodyContact::stretch_limit) and
-    /// `params.contact.stretch_limit` set other limits, infinity switches them off.
+    /// By default no edge gets longer than 1.1 times its rest length.
+    /// [`BodyContact::stretch_limit`](crate::BodyContact::stretch_limit) and `params.contact.stretch_limit`
+    /// set other limits, infinity switches them off.
     ///
     /// # Errors
     /// Wrong lengths, non-finite numbers, massless vertices, parameters out of range.
@@ -59,7 +60,8 @@ impl Resolver {
         Self::with_contact(model, rest, masses, ContactData::default(), params)
     }
 
-    /// A resolver whose bodies and half-spaces have contact data: friction, thickness, contact distance, stretch limit.
+    /// A resolver whose bodies and half-spaces have contact data: friction, thickness, contact distance,
+    /// stretch limit.
     ///
     /// # Errors
     /// As [`Self::new`]; [`ResolveError::Contact`] with everything that is wrong with `contact`.
@@ -75,17 +77,17 @@ impl Resolver {
         Ok(Self::with_stages(scene, search, LcpBackward::default(), CertifiedForward::default()))
     }
 
-    /// Changes the filters of the bodies, and the half-spaces, from the next call on, one entry per body and per
-    /// half-space of the collision model. The next call searches for all pairs.
+    /// Changes the filters of the bodies, and the half-spaces, from the next call on, one entry per body and
+    /// per half-space of the collision model. The next call searches for all pairs.
     ///
-    /// **Bodies that rest** may be made obstacles. They then have no rows and no pairs with other obstacles, and their
-    /// vertices go to their targets. Lengths, masses and edge lengths of vertices stay those of the bodies that the
-    /// resolver was made with. Two obstacles never form a pair: a body that is made an obstacle is safe from other
-    /// obstacles only as long as neither moves into the other.
+    /// **Bodies that rest** may be made obstacles. They then have no rows and no pairs with other obstacles,
+    /// and their vertices go to their targets. Lengths, masses and edge lengths of vertices stay those of the
+    /// bodies that the resolver was made with. Two obstacles never form a pair: a body that is made an
+    /// obstacle is safe from other obstacles only as long as neither moves into the other.
     ///
     /// **Obstacles and half-spaces that come and go** are [absent](BodyFilter::absent) meanwhile
-    /// ([half-spaces](HalfSpace::absent)): they meet nothing. Before one comes back the caller makes sure that it
-    /// intersects nothing, as with any start ([`Self::detect_intersections`] with the new filters).
+    /// ([half-spaces](HalfSpace::absent)): they meet nothing. Before one comes back the caller makes sure
+    /// that it intersects nothing, as with any start ([`Self::detect_intersections`] with the new filters).
     ///
     /// # Errors
     /// A wrong number of entries; a body that would be deformable although its vertices have no mass. The
@@ -118,8 +120,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Resolver<S, B, F> {
         &self.state
     }
 
-    /// Refuses positions [m] with coordinates so large that their rounding exceeds the smallest minimum separation, as a
-    /// call does with its start and its target.
+    /// Refuses positions [m] with coordinates so large that their rounding exceeds the smallest minimum
+    /// separation, as a call does with its start and its target.
     ///
     /// # Errors
     /// [`ResolveError::MinSeparationBelowRounding`] with the farthest vertex.
@@ -162,8 +164,9 @@ impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Resolver<S, B, F> {
     /// and the statistics do not tell.
     ///
     /// # Errors
-    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation; more pairs than can be
-    /// numbered; in debug builds a start that intersects. The call is then refused, and `positions` are unchanged.
+    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation; more pairs
+    /// than can be numbered; in debug builds a start that intersects. The call is then refused, and
+    /// `positions` are unchanged.
     pub fn resolve(&mut self, positions: &mut [Point], target: &[Point]) -> Result<Statistics, ResolveError> {
         self.resolve_with(positions, target, &ResolveInput::default(), &mut ())
     }

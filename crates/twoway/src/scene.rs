@@ -173,13 +173,14 @@ impl CollisionScene {
         self.facing.is_contact(self.model.topology(), features, normal, positions, tolerance)
     }
 
-    /// How much of a contact two features are, see [`Facing::contact_share`](bowknot_constraints::Facing::contact_share).
+    /// How much of a contact two features are, see
+    /// [`Facing::contact_share`](bowknot_constraints::Facing::contact_share).
     pub fn contact_share(&self, features: [Feature; 2], normal: &Vector, positions: &[Point]) -> f64 {
         self.facing.contact_share(self.model.topology(), features, normal, positions)
     }
 
-    /// The direction in the normal cones of both `features` that is closest to `normal`, or the normal of the `rigid` side where
-    /// that is flat, see [`Facing::turned`](bowknot_constraints::Facing::turned).
+    /// The direction in the normal cones of both `features` that is closest to `normal`, or the normal of the
+    /// `rigid` side where that is flat, see [`Facing::turned`](bowknot_constraints::Facing::turned).
     pub fn turned(
         &self,
         features: [Feature; 2],
@@ -226,7 +227,8 @@ impl CollisionScene {
     ///
     /// # Errors
     /// [`ResolveError::Contact`] if there is another number of entries than of bodies or half-spaces;
-    /// [`ResolveError::Mass`] if a body would be deformable whose vertices have no mass. The scene is then unchanged.
+    /// [`ResolveError::Mass`] if a body would be deformable whose vertices have no mass. The scene is then
+    /// unchanged.
     pub(crate) fn set_filters(
         &mut self,
         filters: &[BodyFilter],

@@ -152,9 +152,10 @@ impl<'a> Rule<'a> {
 
     /// A contact distance `delta` [m] without what prescribed vertices of the pair lack of it.
     ///
-    /// Where prescribed vertices end nearer than that, the other vertices of their side would have to make up for it.
-    /// With a closest point near a prescribed vertex they have a short lever, and would have to go far. So they are asked
-    /// for no more than the distance in their own places: what prescribed vertices lack is not asked for.
+    /// Where prescribed vertices end nearer than that, the other vertices of their side would have to make up
+    /// for it. With a closest point near a prescribed vertex they have a short lever, and would have to go
+    /// far. So they are asked for no more than the distance in their own places: what prescribed vertices
+    /// lack is not asked for.
     fn attainable_distance(
         &self,
         kind: PairKind,

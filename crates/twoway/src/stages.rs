@@ -18,8 +18,8 @@ pub trait Search: Send {
     /// that could meet, with its contact geometry.
     fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
-    /// Makes the pairs of `state.contacts` all that could meet while the vertices move from x along `displacements`, all at the
-    /// same path time, and deviate from there by at most `deviations` [m].
+    /// Makes the pairs of `state.contacts` all that could meet while the vertices move from x along
+    /// `displacements`, all at the same path time, and deviate from there by at most `deviations` [m].
     fn update_swept(
         &mut self,
         scene: &CollisionScene,
@@ -29,7 +29,8 @@ pub trait Search: Send {
         statistics: &mut Statistics,
     );
 
-    /// Makes `state.contacts` valid for `state.x` at the end of a call. Adds the number of candidate pairs to the statistics.
+    /// Makes `state.contacts` valid for `state.x` at the end of a call. Adds the number of candidate pairs to
+    /// the statistics.
     fn finish(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
     /// Asks for a search in the next update.
@@ -76,8 +77,8 @@ pub trait BackwardStep: Send {
 
 /// Moves x toward y on paths without intersections, with the candidates of a search.
 pub trait ForwardStep<S: Search>: Send {
-    /// Whether the stage asks the search for pairs beyond contact range. If not, `state.contacts` has all pairs
-    /// that could meet.
+    /// Whether the stage asks the search for pairs beyond contact range. If not, `state.contacts` has all
+    /// pairs that could meet.
     fn visits_ahead(&self) -> bool {
         false
     }

@@ -69,8 +69,8 @@ pub struct Statistics {
     pub injected_j: f64,
     /// Body of the vertex with the largest remaining distance, if the call did not converge.
     pub slowest_body: Option<u32>,
-    /// What held back the vertices that had farthest to go in the last step, if the call took 32 steps or more, or did
-    /// not converge, unless [`crate::ResolveInput::max_steps`] cut it short.
+    /// What held back the vertices that had farthest to go in the last step, if the call took 32 steps or
+    /// more, or did not converge, unless [`crate::ResolveInput::max_steps`] cut it short.
     #[serde(default)]
     pub waits: Vec<Wait>,
     /// Wall seconds by stage.

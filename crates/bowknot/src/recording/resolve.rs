@@ -8,8 +8,8 @@ use bowknot_twoway::{ContactData, Params, ResolveError, ResolveInput, Resolver};
 use std::collections::BTreeMap;
 
 impl States {
-    /// The collision model of the problem: a body is an obstacle if all its vertices are. Which bodies collide is
-    /// what [`Self::filters`] says.
+    /// The collision model of the problem: a body is an obstacle if all its vertices are. Which bodies
+    /// collide is what [`Self::filters`] says.
     ///
     /// # Errors
     /// A mesh that is none, a body with obstacle and deformable vertices; in words.
@@ -24,8 +24,8 @@ impl States {
         for (vertex, (&body, &flag)) in self.body.iter().zip(&self.obstacle).enumerate() {
             if *obstacle.entry(body).or_insert(flag) != flag {
                 return Err(format!(
-                    "array O: body {body} has obstacle and deformable vertices (vertex {vertex} differs from its \
-                     first)"
+                    "array O: body {body} has obstacle and deformable vertices (vertex {vertex} differs from \
+                     its first)"
                 ));
             }
         }

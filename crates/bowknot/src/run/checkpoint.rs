@@ -19,12 +19,12 @@ const YIELDING: &str = "yielding_edges";
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
     /// `anchor_counts[p]`, `anchors[k,3]`, `present[b+h]` (1 for bodies and half-spaces that are there),
-    /// `contact_features[c,4]` (kind and index of either feature: 0 vertex, 1 edge, 2 triangle, 3 half-space),
-    /// `contact_normals[c,3]`, `contact_forces[c,3]`; of contacts near
-    /// rest `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset,
-    /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back); `yielding_edges[e,3]`, if
-    /// there are any (two vertices, limit); where bodies
-    /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
+    /// `contact_features[c,4]` (kind and index of either feature: 0 vertex, 1 edge, 2 triangle, 3
+    /// half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; of contacts near rest
+    /// `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset,
+    /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back);
+    /// `yielding_edges[e,3]`, if there are any (two vertices, limit); where bodies may sleep,
+    /// `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
     /// `checksum[8]` of all that.
     ///
     /// # Errors
@@ -221,8 +221,8 @@ fn yielding(archive: &mut Archive<'_>) -> Result<Vec<DistanceLimit>, IoError> {
     Ok(rows.into_iter().map(edge).collect())
 }
 
-/// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards them
-/// together, so that no array is of another checkpoint, or left out.
+/// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards
+/// them together, so that no array is of another checkpoint, or left out.
 fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
     let Checkpoint { step, positions, velocities, anchors, present, contacts, sleep } = checkpoint;
     let mut sum = Checksum(0);
@@ -253,7 +253,8 @@ fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
     sum.0.to_le_bytes()
 }
 
-/// A sum of words that depends on their order. Each step is one to one, so a single changed word always changes it.
+/// A sum of words that depends on their order. Each step is one to one, so a single changed word always
+/// changes it.
 struct Checksum(u64);
 
 impl Checksum {

@@ -12,8 +12,8 @@ use bowknot_twoway::ResolveError;
 use std::path::PathBuf;
 
 /// Why a simulation cannot begin or go on. All but [`SimulationError::Interrupted`] and
-/// [`SimulationError::Internal`] are the user's input or an unwritable output (exit code 2 of the command); that
-/// a check found an intersection is no error but a result, see [`crate::run::Summary::intersections`].
+/// [`SimulationError::Internal`] are the user's input or an unwritable output (exit code 2 of the command);
+/// that a check found an intersection is no error but a result, see [`crate::run::Summary::intersections`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -54,7 +54,8 @@ pub enum SimulationError {
         /// Why.
         source: ResolveError,
     },
-    /// What resolves the collisions or solves linear systems has failed; the simulator is as it was before the time step.
+    /// What resolves the collisions or solves linear systems has failed; the simulator is as it was before
+    /// the time step.
     #[error("time step {step}: {source}")]
     Backend {
         /// The time step, from 1; 0 before the first.
@@ -87,7 +88,8 @@ pub enum SimulationError {
     },
     /// The program itself failed within a run.
     #[error(
-        "time step {step}: internal error: {message}\nThis is a fault of the program, please report it. What was written \
+        "time step {step}: internal error: {message}\nThis is a fault of the program, please report it. What \
+         was written \
          so far is whole; --resume goes on from the last checkpoint."
     )]
     Internal {
@@ -181,8 +183,8 @@ fn resolve_message(error: &ResolveError, body: &str) -> String {
     match error {
         ResolveError::MinSeparationBelowRounding { min_separation, coordinate, needed, .. } => format!(
             "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate \
-             ({coordinate:.3e} m, body {body}): move the scene closer to the origin, or set contact.min_separation above \
-             {needed:.3e} m"
+             ({coordinate:.3e} m, body {body}): move the scene closer to the origin, or set \
+             contact.min_separation above {needed:.3e} m"
         ),
         ResolveError::NonFinite { what, vertex, .. } => {
             format!("{what} of vertex {vertex} (body {body}) is not finite")

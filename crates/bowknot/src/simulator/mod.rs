@@ -1,7 +1,7 @@
 //! The simulator: one time step after the other.
 //!
-//! [`Simulator`] holds the scene and its state. `time_step.rs` makes a time step, `newton_iterations.rs` solves
-//! it. The folders:
+//! [`Simulator`] holds the scene and its state. `time_step.rs` makes a time step, `newton_iterations.rs`
+//! solves it. The folders:
 //!
 //! - `contact_forces`, `stretch_limits`: what the dynamics knows of contacts, and of edges at their limits;
 //! - `sleep`: bodies at rest;
@@ -139,8 +139,8 @@ impl Simulator {
         Ok((world, report))
     }
 
-    /// Pairs that are nearer than their contact distance before the first time step, by bodies, most first. Neighbors along the
-    /// surface do not count, nor does anything after the first time step.
+    /// Pairs that are nearer than their contact distance before the first time step, by bodies, most first.
+    /// Neighbors along the surface do not count, nor does anything after the first time step.
     pub fn near_starts(&self) -> Vec<NearStart> {
         if self.step == 0 { start::near_starts(&self.world, &self.resolver) } else { Vec::new() }
     }
@@ -183,9 +183,10 @@ impl Simulator {
         })
     }
 
-    /// Whether time steps measure what they report but do not need: energies, momentum, center of mass, largest
-    /// stretch and speed, inverted tetrahedra, and the residual of a last iteration. True at first. Otherwise
-    /// these are 0 in [`StepStatistics`], and a time step takes some hundredths less. Results do not change.
+    /// Whether time steps measure what they report but do not need: energies, momentum, center of mass,
+    /// largest stretch and speed, inverted tetrahedra, and the residual of a last iteration. True at first.
+    /// Otherwise these are 0 in [`StepStatistics`], and a time step takes some hundredths less. Results do
+    /// not change.
     pub fn set_measured(&mut self, measured: bool) {
         self.measured = measured;
     }

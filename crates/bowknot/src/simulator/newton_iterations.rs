@@ -205,8 +205,8 @@ impl NewtonIterations<'_> {
         }
     }
 
-    /// Finds the contacts at x, where vertices inside of solids have followed, and the residual of the time step with
-    /// their forces.
+    /// Finds the contacts at x, where vertices inside of solids have followed, and the residual of the time
+    /// step with their forces.
     fn apply_contact_forces(&mut self) -> Result<(), StepError> {
         let timer = Instant::now();
         let Self { dynamics, resolver, contacts, statistics, .. } = self;
@@ -231,7 +231,8 @@ impl NewtonIterations<'_> {
         Ok(())
     }
 
-    /// Lets the groups of bodies whose time step is solved stay where they are, unless the collision problem was cut short.
+    /// Lets the groups of bodies whose time step is solved stay where they are, unless the collision problem
+    /// was cut short.
     fn finish_groups(&mut self, is_cut: bool) {
         let Self { dynamics, contacts, world, tolerance, .. } = self;
         let Scratch { x, prescribed, ends, finished, .. } = &mut *self.scratch;
@@ -246,7 +247,8 @@ impl NewtonIterations<'_> {
         }
     }
 
-    /// Ends the time step at x: whether it is solved, a judgment of what a device has computed, and what contacts remember.
+    /// Ends the time step at x: whether it is solved, a judgment of what a device has computed, and what
+    /// contacts remember.
     fn end(&mut self) -> Result<(), SimulationError> {
         let Self { step, world, resolver, backend, contacts, .. } = self;
         let Scratch { start, x, .. } = &*self.scratch;

@@ -15,12 +15,13 @@ impl Simulator {
     /// A target that is not finite, with its body; coordinates too large for the minimum separation. The
     /// simulator is then as it was before the step.
     pub fn step(&mut self) -> Result<StepStatistics, SimulationError> {
-        // From outside of the thread pool each of the parallel loops would put this thread to sleep and wake it again.
+        // From outside of the thread pool each of the parallel loops would put this thread to sleep and wake
+        // it again.
         rayon::scope(|_| self.step_observed(&mut ()))
     }
 
-    /// Makes one time step with an observer, on this thread. Scenes of a few thousand vertices take less time from inside
-    /// of the thread pool, as by `rayon::scope(|_| ...)`.
+    /// Makes one time step with an observer, on this thread. Scenes of a few thousand vertices take less time
+    /// from inside of the thread pool, as by `rayon::scope(|_| ...)`.
     ///
     /// # Errors
     /// As [`Self::step`]; [`SimulationError::Interrupted`] if the observer stopped it. The simulator is
@@ -89,7 +90,8 @@ impl Simulator {
         self.anchors = anchors;
         self.attachments.iter_mut().for_each(Vec::clear);
         self.scratch = scratch;
-        // The resolver still has the pairs of the abandoned step. What contacts remember changes at its end alone.
+        // The resolver still has the pairs of the abandoned step. What contacts remember changes at its end
+        // alone.
         let carried = self.contacts.carried().clone();
         self.find_contacts(carried)
     }

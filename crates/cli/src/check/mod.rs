@@ -231,8 +231,8 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// Adds the verdict on a state, and that on the `path` to it. The mesh says what is of an obstacle and of which
-    /// body.
+    /// Adds the verdict on a state, and that on the `path` to it. The mesh says what is of an obstacle and of
+    /// which body.
     fn judged(
         &mut self,
         &StateOfFile { file, mesh, positions, judge }: &StateOfFile<'_>,
@@ -312,8 +312,8 @@ impl Checker<'_> {
         self.report.mesh_problems += problems.len();
         if let Some(first) = problems.first() {
             self.bar.print(&format!(
-                "warning: {name}: {first}; {} in all, which a deformable body may not have: `bowknot info` lists them, \
-                 `bowknot repair` drops them",
+                "warning: {name}: {first}; {} in all, which a deformable body may not have: `bowknot info` \
+                 lists them, `bowknot repair` drops them",
                 counted(problems.len(), "such triangle", "such triangles")
             ));
         }

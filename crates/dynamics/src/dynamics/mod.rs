@@ -124,10 +124,11 @@ impl Dynamics {
         &self.params
     }
 
-    /// Lets a backend do the linear solves of Newton iterations in single precision from the next target on; None for
-    /// the CPU, as at first. The CPU refines them in double precision and solves alone where single precision gains
-    /// nothing. A backend that computes the whole of Newton iterations does so if it can compute the model
-    /// ([`NewtonBackend`]), and the residuals of time steps are measured by its preconditioner.
+    /// Lets a backend do the linear solves of Newton iterations in single precision from the next target on;
+    /// None for the CPU, as at first. The CPU refines them in double precision and solves alone where single
+    /// precision gains nothing. A backend that computes the whole of Newton iterations does so if it can
+    /// compute the model ([`NewtonBackend`]), and the residuals of time steps are measured by its
+    /// preconditioner.
     pub fn set_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
         let patches = match self.params.newton.preconditioner {
             PreconditionerKind::BlockJacobi => Vec::new(),
@@ -170,9 +171,9 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Sets the [`Residual::distance`] at which a time step counts as solved [m], 0 at first: none. It takes effect at the next
-    /// [`Self::begin_step`]. Linear solves that correct a step are then accurate enough for it, however far bodies move in
-    /// the step and however much they differ in mass.
+    /// Sets the [`Residual::distance`] at which a time step counts as solved [m], 0 at first: none. It takes
+    /// effect at the next [`Self::begin_step`]. Linear solves that correct a step are then accurate enough
+    /// for it, however far bodies move in the step and however much they differ in mass.
     pub fn set_step_tolerance(&mut self, distance: f64) {
         self.step_tolerance = distance;
     }
@@ -193,8 +194,8 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Forces of the springs on the side that their normal points to, where the last [`Self::residual`] was measured
-    /// [N]; one entry per spring.
+    /// Forces of the springs on the side that their normal points to, where the last [`Self::residual`] was
+    /// measured [N]; one entry per spring.
     pub fn contact_forces(&self) -> Vec<Vector> {
         let trial = self.repulsion.watched().iter().map(|&node| self.work.x[node as usize]);
         self.repulsion.forces(&trial.collect::<Vec<_>>())
@@ -212,9 +213,10 @@ impl Dynamics {
         positions.map(inertial).collect()
     }
 
-    /// The residual of the time step at `x` [m]. Contact forces are those of the springs at `x`. Only forces on
-    /// vertices that are free and `counted` enter; leave out vertices on which unknown forces act. All slices have one
-    /// entry per vertex. If there are springs, the next target begins as if they had just been set.
+    /// The residual of the time step at `x` [m]. Contact forces are those of the springs at `x`. Only forces
+    /// on vertices that are free and `counted` enter; leave out vertices on which unknown forces act. All
+    /// slices have one entry per vertex. If there are springs, the next target begins as if they had just
+    /// been set.
     ///
     /// # Errors
     /// A length is wrong, an entry is not finite, no step was begun, or the backend has failed.
@@ -240,15 +242,15 @@ impl Dynamics {
         Ok(residual)
     }
 
-    /// The [`Residual::distance`] of each connected component in the last call of [`Self::residual`], in the order of
-    /// [`DynamicsModel::components_of_vertices`] [m].
+    /// The [`Residual::distance`] of each connected component in the last call of [`Self::residual`], in the
+    /// order of [`DynamicsModel::components_of_vertices`] [m].
     pub fn component_distances(&self) -> &[f64] {
         &self.component_distances
     }
 
-    /// Lets Newton's method work from the iterate in the workspace, on a device if there is one for the model. What a
-    /// device cannot finish in single precision begins again on the CPU, as does the rest of the time step. With
-    /// `sets_trial` the trial in the workspace is the result.
+    /// Lets Newton's method work from the iterate in the workspace, on a device if there is one for the
+    /// model. What a device cannot finish in single precision begins again on the CPU, as does the rest of
+    /// the time step. With `sets_trial` the trial in the workspace is the result.
     fn with_bodies<T: Send>(
         &mut self,
         step: &Step,
@@ -492,8 +494,8 @@ impl Dynamics {
         Ok(StepTerms::new(&self.model, &self.params, step))
     }
 
-    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes
-    /// it.
+    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread
+    /// computes it.
     ///
     /// # Errors
     /// No step was begun, or the length is wrong.

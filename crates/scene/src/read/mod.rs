@@ -1,5 +1,5 @@
-//! From a parsed description to a [`Scene`]: the order in which its tables are read. `section.rs` reads one table, the other
-//! files say which keys each part has.
+//! From a parsed description to a [`Scene`]: the order in which its tables are read. `section.rs` reads one
+//! table, the other files say which keys each part has.
 
 mod body;
 mod material;
@@ -73,7 +73,8 @@ fn simulation_keys() -> Vec<&'static str> {
     [field_names::<SimulationParams>(), field_names::<Environment>()].concat()
 }
 
-/// Reports top-level keys that are no tables. One that is a key of a table is said to be that, such as `wind`.
+/// Reports top-level keys that are no tables. One that is a key of a table is said to be that, such as
+/// `wind`.
 fn check_tables(root: &Section<'_>) {
     let tables = [
         ("simulation", simulation_keys()),

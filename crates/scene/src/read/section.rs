@@ -125,8 +125,8 @@ impl Section<'_> {
         }
     }
 
-    /// Reads those keys that are fields of `T` over `base`, except for `nested` ones, which the caller reads. Other keys are
-    /// left to [`Self::check_keys`].
+    /// Reads those keys that are fields of `T` over `base`, except for `nested` ones, which the caller reads.
+    /// Other keys are left to [`Self::check_keys`].
     pub fn fields<T>(&self, base: &T, nested: &[&str]) -> T
     where
         T: Serialize + DeserializeOwned + Default + Clone,

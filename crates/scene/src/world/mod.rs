@@ -65,7 +65,8 @@ pub struct World {
     pub materials: Vec<Body>,
     /// Held or led vertices.
     pub pins: Vec<Pin>,
-    /// What was repaired or left out on the way, what speaks for a wrong unit, and keys without effect, in words.
+    /// What was repaired or left out on the way, what speaks for a wrong unit, and keys without effect, in
+    /// words.
     pub warnings: Vec<String>,
     /// Positions of obstacle vertices without their motion [m]; of the other vertices that collide, those at
     /// time 0.
@@ -85,7 +86,8 @@ pub struct WorldBody {
     pub interior: Range<u32>,
     /// Its tetrahedra, of positive volume at time 0, if it is a solid; eight of each quadratic one.
     pub tets: Vec<[u32; 4]>,
-    /// Its quadratic tetrahedra, if it is a solid of such: corners, then the middles of the edges 01, 02, 03, 12, 13, 23.
+    /// Its quadratic tetrahedra, if it is a solid of such: corners, then the middles of the edges 01, 02, 03,
+    /// 12, 13, 23.
     pub quadratic_tets: Vec<[u32; 10]>,
     /// Its edges, if it is made of strands.
     pub strands: Vec<[u32; 2]>,
@@ -102,7 +104,8 @@ pub struct WorldBody {
 }
 
 impl WorldBody {
-    /// The edges of its quadratic tetrahedra, by the vertices at their ends, with those in their middles; some more than once.
+    /// The edges of its quadratic tetrahedra, by the vertices at their ends, with those in their middles;
+    /// some more than once.
     fn middles(&self) -> impl Iterator<Item = ([u32; 2], u32)> + '_ {
         self.quadratic_tets.iter().flat_map(|tet| {
             TETRAHEDRON_EDGES.iter().zip(&tet[4..]).map(|([i, j], &v)| ([tet[*i], tet[*j]], v))
@@ -202,8 +205,8 @@ impl World {
         self.bodies.iter().map(|body| &body.name).chain(&self.half_space_names)
     }
 
-    /// Filters of the bodies, and half-spaces, of which those are absent that are not `present`: one entry per body, then
-    /// one per half-space.
+    /// Filters of the bodies, and half-spaces, of which those are absent that are not `present`: one entry
+    /// per body, then one per half-space.
     pub fn filters(&self, present: &[bool]) -> (Vec<BodyFilter>, Vec<HalfSpace>) {
         let (bodies, half_spaces) = present.split_at(self.bodies.len());
         let body = |(filter, present): (&BodyFilter, &bool)| if *present { *filter } else { filter.absent() };

@@ -74,8 +74,9 @@ impl AheadPairs {
         visit_half_spaces(scene, state, &self.half_space_pairs, visit);
     }
 
-    /// Calls `visit` with all pairs of a swept search that are not pairs of `state.contacts`: `candidates` and
-    /// the pairs of half-spaces that come within twice the `radius` of a vertex along `displacements` [m].
+    /// Calls `visit` with all pairs of a swept search that are not pairs of `state.contacts`: `candidates`
+    /// and the pairs of half-spaces that come within twice the `radius` of a vertex along `displacements`
+    /// [m].
     pub fn visit_swept(
         &mut self,
         scene: &CollisionScene,

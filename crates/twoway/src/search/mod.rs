@@ -142,10 +142,11 @@ impl TrustRegionSearch {
     }
 }
 
-/// What [`CertifiedForward`](crate::CertifiedForward) and [`Resolver::adopt`](crate::Resolver::adopt) ask for.
+/// What [`CertifiedForward`](crate::CertifiedForward) and [`Resolver::adopt`](crate::Resolver::adopt) ask
+/// for.
 impl TrustRegionSearch {
-    /// As [`Self::update`], for a caller who knows the pairs: all that are within contact range at `state.x` are among
-    /// `near`. It need not search then.
+    /// As [`Self::update`], for a caller who knows the pairs: all that are within contact range at `state.x`
+    /// are among `near`. It need not search then.
     pub fn update_among(
         &mut self,
         scene: &CollisionScene,
@@ -156,7 +157,8 @@ impl TrustRegionSearch {
         if self.complete {
             return self.update(scene, state, statistics);
         }
-        // Candidates and trust regions stay as they are: the next update renews those that vertices have left.
+        // Candidates and trust regions stay as they are: the next update renews those that vertices have
+        // left.
         let timer = Instant::now();
         self.near.select_among(scene, state, near, statistics);
         statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
@@ -201,8 +203,8 @@ impl TrustRegionSearch {
 
     /// Calls `visit` with the pairs within bodies that are not in `state.contacts` and could limit a step in
     /// free flight along `displacements` [m] from x: one in which no body comes near another or a half-space,
-    /// and the vertices of each body move almost alike. Returns whether the step is one. It must be a function
-    /// of x and the displacements.
+    /// and the vertices of each body move almost alike. Returns whether the step is one. It must be a
+    /// function of x and the displacements.
     pub fn visit_flight(
         &mut self,
         scene: &CollisionScene,
@@ -253,8 +255,8 @@ impl TrustRegionSearch {
     }
 
     /// Calls `visit` with every pair that is not in `state.contacts` and could meet while the vertices move
-    /// from x along `displacements`, all at the same path time, and deviate from there by at most `deviations`
-    /// [m].
+    /// from x along `displacements`, all at the same path time, and deviate from there by at most
+    /// `deviations` [m].
     pub fn visit_swept(
         &mut self,
         scene: &CollisionScene,

@@ -154,8 +154,8 @@ impl NearPairs {
         std::mem::swap(&mut self.old, contacts);
     }
 
-    /// Carries the data of the pairs that were [kept](Self::keep) over to those of the state, which were found
-    /// otherwise, with their geometry.
+    /// Carries the data of the pairs that were [kept](Self::keep) over to those of the state, which were
+    /// found otherwise, with their geometry.
     pub fn replace(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         state.contacts.pairs.match_with(&self.old.pairs, &mut self.matches);
         self.inherit(scene, state, statistics);
@@ -370,8 +370,9 @@ pub const KNOWN: f64 = 1.3;
 /// Share of its gap that the row of a contact guards which the target knows.
 pub const GUARDED: f64 = 0.7;
 
-/// Smallest distance that such a row asks for, in the way from the minimum separation to the contact distance. At the minimum separation
-/// the forward step closes no pair further, and a pair that is held there is stuck.
+/// Smallest distance that such a row asks for, in the way from the minimum separation to the contact
+/// distance. At the minimum separation the forward step closes no pair further, and a pair that is held there
+/// is stuck.
 pub const GUARDED_FLOOR: f64 = 0.35;
 
 /// Data of a pair that is new in this call.

@@ -24,8 +24,8 @@ impl RowSolver for AllEdges {
     }
 }
 
-/// What one call leaves: y^(l), the largest ratio of an edge at y to 1.1 times its rest length, and the rows with
-/// a multiplier.
+/// What one call leaves: y^(l), the largest ratio of an edge at y to 1.1 times its rest length, and the rows
+/// with a multiplier.
 struct Outcome {
     y: Vec<Point>,
     stretch: f64,
@@ -67,8 +67,8 @@ fn distance(a: &[Point], b: &[Point]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
-/// A chain along x of which only the last vertex wants to move: at the target one edge is too long, and pulls the
-/// others after it one by one.
+/// A chain along x of which only the last vertex wants to move: at the target one edge is too long, and pulls
+/// the others after it one by one.
 fn chain() -> (CollisionModel, Vec<Point>, Vec<Point>) {
     let x: Vec<Point> = (0..40).map(|i| Point::new(0.1 * f64::from(i), 0.0, 0.0)).collect();
     let topology = Topology::builder(40).strand_edges((0..39).map(|i| [i, i + 1])).build().unwrap();

@@ -1,30 +1,32 @@
 //! Contacts over the Newton iterations of a time step, and over the time steps of bodies at rest.
 //!
-//! Contacts follow from positions, but not smoothly. Normals turn with the bodies, so that bodies pressed together overshoot,
-//! to one side and the other in turn. And contacts come and go: that of two crossing edges ends at once where its closest
-//! point reaches the end of an edge, and others take over its stiffness (`crowding.rs`). Where forces balance only at
-//! the border between two such sets of contacts, Newton's method would go from one set to the other for ever.
+//! Contacts follow from positions, but not smoothly. Normals turn with the bodies, so that bodies pressed
+//! together overshoot, to one side and the other in turn. And contacts come and go: that of two crossing
+//! edges ends at once where its closest point reaches the end of an edge, and others take over its stiffness
+//! (`crowding.rs`). Where forces balance only at the border between two such sets of contacts, Newton's
+//! method would go from one set to the other for ever.
 //!
-//! So each contact is the mean of what it was after the iterations so far (Mann, "Mean value methods in iteration",
-//! Proceedings of the American Mathematical Society 4, 1953). Contacts that come and go tend to the mixture of both sets
-//! whose forces balance: a solution in the sense of Filippov. What contacts were at the start of the time step does not count:
-//! in an impact that is far off. Near rest it is not, and there the mean goes on from time step to time step: else each would
-//! begin anew between the two sets, and end there if it has too few iterations.
+//! So each contact is the mean of what it was after the iterations so far (Mann, "Mean value methods in
+//! iteration", Proceedings of the American Mathematical Society 4, 1953). Contacts that come and go tend to
+//! the mixture of both sets whose forces balance: a solution in the sense of Filippov. What contacts were at
+//! the start of the time step does not count: in an impact that is far off. Near rest it is not, and there
+//! the mean goes on from time step to time step: else each would begin anew between the two sets, and end
+//! there if it has too few iterations.
 
 use bowknot_constraints::Feature;
 use bowknot_dynamics::RepulsionSpring;
 use bowknot_geometry::{Point, Vector};
 use rustc_hash::FxHashMap;
 
-/// Share of its height above the floor that a contact which is none any more keeps at least. Nearer, its plane is not where
-/// the bodies are: they have slid past each other.
+/// Share of its height above the floor that a contact which is none any more keeps at least. Nearer, its
+/// plane is not where the bodies are: they have slid past each other.
 const STILL_THERE: f64 = 0.9;
 
 /// Stiffness, in that of a whole contact, below which one that is none any more is forgotten.
 const FORGOTTEN: f64 = 0.01;
 
-/// Way of its vertices, in its reach, over which the mean of a contact goes back at most. Less forgets too soon to settle at the border
-/// between two sets; more lags behind bodies that slide.
+/// Way of its vertices, in its reach, over which the mean of a contact goes back at most. Less forgets too
+/// soon to settle at the border between two sets; more lags behind bodies that slide.
 const MEMORY: f64 = 0.1;
 
 /// A contact near rest, for the next time step: the mean of what it was.
@@ -40,7 +42,8 @@ pub struct ContactMean {
     pub depth: u32,
 }
 
-/// Contacts: their features, springs, and distances where they were found [m]. Other springs may follow after theirs.
+/// Contacts: their features, springs, and distances where they were found [m]. Other springs may follow after
+/// theirs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FoundContacts {
     pub features: Vec<[Feature; 2]>,
@@ -76,8 +79,8 @@ impl Finds {
         self.in_step += 1;
     }
 
-    /// How many finds the mean of a contact goes back, if its vertices have moved from one of `way` to the other in this time
-    /// step: so many that they have not moved far meanwhile.
+    /// How many finds the mean of a contact goes back, if its vertices have moved from one of `way` to the
+    /// other in this time step: so many that they have not moved far meanwhile.
     fn depth(&self, spring: &RepulsionSpring, [start, x]: [&[Point]; 2]) -> u32 {
         let moved = |v: u32| (x[v as usize] - start[v as usize]).norm();
         let of_vertex = |v: u32| {
@@ -88,8 +91,9 @@ impl Finds {
         used(spring).map(of_vertex).min().unwrap_or(0)
     }
 
-    /// Share of what a contact is now in a mean of this depth [1], and whether that goes back beyond the start of the time step. In
-    /// the first iteration contacts are farthest off, so the second counts twice as much.
+    /// Share of what a contact is now in a mean of this depth [1], and whether that goes back beyond the
+    /// start of the time step. In the first iteration contacts are farthest off, so the second counts twice
+    /// as much.
     fn share_of_new(&self, depth: u32) -> (f64, bool) {
         match self.in_step {
             in_step if depth > in_step => (1.0 / f64::from(depth), true),
@@ -110,7 +114,8 @@ impl FoundContacts {
         }
     }
 
-    /// The means of contacts near rest, at the end of a time step whose vertices have moved from one of `way` to the other.
+    /// The means of contacts near rest, at the end of a time step whose vertices have moved from one of `way`
+    /// to the other.
     pub fn means(&self, finds: &Finds, way: [&[Point]; 2]) -> Vec<ContactMean> {
         let all = self.features.iter().zip(&self.springs).zip(&self.distances);
         let mean = |((features, spring), distance): ((&[Feature; 2], &RepulsionSpring), &f64)| {
@@ -125,9 +130,10 @@ impl FoundContacts {
         all.filter_map(mean).collect()
     }
 
-    /// Averages these contacts, found now, with the means `before`. Vertices have moved from one of `way` to the other in
-    /// this time step. Contacts that are none any more stay with their part. `stiffness` is that of a whole one. Returns
-    /// which of them are among the means and go on with these from before the time step.
+    /// Averages these contacts, found now, with the means `before`. Vertices have moved from one of `way` to
+    /// the other in this time step. Contacts that are none any more stay with their part. `stiffness` is that
+    /// of a whole one. Returns which of them are among the means and go on with these from before the time
+    /// step.
     pub fn average(&mut self, before: &Self, finds: &Finds, stiffness: f64, way: [&[Point]; 2]) -> Vec<bool> {
         let mut go_on = Vec::with_capacity(self.features.len());
         let all_before = before.features.iter().zip(&before.springs).zip(&before.distances);
@@ -265,7 +271,8 @@ mod tests {
         assert_eq!(spring.stiffness, WHOLE);
     }
 
-    /// A time step of one iteration that ends with one set of contacts, then one that ends with the other, and so on.
+    /// A time step of one iteration that ends with one set of contacts, then one that ends with the other,
+    /// and so on.
     #[test]
     fn means_go_on_near_rest_and_begin_anew_in_motion() {
         for (way, bounds) in [(0.002, 0.4..0.6), (0.2, 1.0..1.1)] {
@@ -300,7 +307,8 @@ mod tests {
         }
     }
 
-    /// What has long been at rest is met by something that is new there: at the start of the time step nothing has moved.
+    /// What has long been at rest is met by something that is new there: at the start of the time step
+    /// nothing has moved.
     #[test]
     fn a_contact_of_a_vertex_without_any_is_whole_at_once_and_does_not_go_on() {
         let mean =

@@ -1,9 +1,9 @@
 //! The contacts that the dynamics knows of.
 //!
 //! After each collision stage the pairs within contact range are divided into contacts and neighbors
-//! ([`Facing`](bowknot_constraints::Facing)). Each contact becomes a spring of the Newton system, whose force follows
-//! from its gap. What a contact remembers is friction (`friction.rs`) and, near rest, its mean (`averaging.rs`). Edges
-//! near their stretch limits are springs as well (`stretch_limits`).
+//! ([`Facing`](bowknot_constraints::Facing)). Each contact becomes a spring of the Newton system, whose force
+//! follows from its gap. What a contact remembers is friction (`friction.rs`) and, near rest, its mean
+//! (`averaging.rs`). Edges near their stretch limits are springs as well (`stretch_limits`).
 
 use super::averaging::{ContactMean, Finds, FoundContacts, gap};
 use super::crowding::share_stiffness;
@@ -52,10 +52,11 @@ pub(crate) struct Contacts {
     newton: NewtonBodies,
     /// Of these, the vertices whose forces the residual of a time step counts.
     counted: Vec<bool>,
-    /// Pairs that were in contact range at the start of the time step or after one of its collision stages, without those
-    /// within a component.
+    /// Pairs that were in contact range at the start of the time step or after one of its collision stages,
+    /// without those within a component.
     touching: Touching,
-    /// The component of each vertex, see [`DynamicsModel::components_of_vertices`]. A component is part of one body.
+    /// The component of each vertex, see [`DynamicsModel::components_of_vertices`]. A component is part of
+    /// one body.
     components: Vec<u32>,
 }
 
@@ -111,8 +112,8 @@ impl Contacts {
     }
 
     /// Begins a time step at the positions `start`. It forgets the pairs of the last time step that are out
-    /// of contact range, and finds the contacts from positions and what is carried alone, so that a resumed run finds
-    /// the same.
+    /// of contact range, and finds the contacts from positions and what is carried alone, so that a resumed
+    /// run finds the same.
     pub fn begin_step(&mut self, resolver: &Resolver, prescribed: &[bool], start: &[Point], dt: f64) {
         let (rest, before) = (resolver.scene().rest(), &self.carried.yielding);
         if self.held.begin_step(self.limited.edges(), [rest, start], prescribed, before) {
@@ -167,7 +168,8 @@ impl Contacts {
         of_contacts.filter(|(_, _, force)| **force != Vector::zeros())
     }
 
-    /// Ends a time step from the positions `start` with the `forces` of the springs [N], and those of the rows.
+    /// Ends a time step from the positions `start` with the `forces` of the springs [N], and those of the
+    /// rows.
     pub fn end_step(&mut self, forces: &[Vector], resolver: &Resolver, start: &[Point]) {
         let force = |(features, spring, force): (&[Feature; 2], &RepulsionSpring, &Vector)| ContactForce {
             features: *features,
@@ -181,8 +183,8 @@ impl Contacts {
         self.carried = CarriedContacts { forces, means, yielding: self.limited.yielding().to_vec() };
     }
 
-    /// Adds the pairs in contact range to [`Self::touching`], which joins components, and what holds them. Pairs within a
-    /// component do neither.
+    /// Adds the pairs in contact range to [`Self::touching`], which joins components, and what holds them.
+    /// Pairs within a component do neither.
     pub fn record_pairs_in_range(&mut self, resolver: &Resolver) {
         let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
         let Self { touching, components, newton, .. } = self;
@@ -224,8 +226,8 @@ impl Contacts {
         rayon::scope(|_| PairKind::ALL.into_iter().for_each(record));
     }
 
-    /// Records what rows alone carry after a call of the collision stage. If the dynamics knows no contacts they hold all
-    /// bodies, and the residual does not count the vertices where they press.
+    /// Records what rows alone carry after a call of the collision stage. If the dynamics knows no contacts
+    /// they hold all bodies, and the residual does not count the vertices where they press.
     pub fn record_rows(&mut self, resolver: &Resolver) {
         self.rows.record(resolver, self.newton.flags());
         if self.stiffness != 0.0 {
@@ -241,8 +243,8 @@ impl Contacts {
         }
     }
 
-    /// Finds the contacts at the present state of the collision stage, in the order of its candidate pairs. `start` are
-    /// positions at the start of the time step.
+    /// Finds the contacts at the present state of the collision stage, in the order of its candidate pairs.
+    /// `start` are positions at the start of the time step.
     pub fn find(&mut self, resolver: &Resolver, start: &[Point]) {
         if self.stiffness == 0.0 {
             return;
@@ -270,8 +272,8 @@ impl Contacts {
         }
         let held: Vec<_> = found.springs.iter().filter_map(|spring| self.held_by(spring)).collect();
         self.touching.held.extend(held);
-        // For contacts that are new or have turned, the gap between the same points at the start may be smaller than the
-        // one that the collision stage has reached.
+        // For contacts that are new or have turned, the gap between the same points at the start may be
+        // smaller than the one that the collision stage has reached.
         let all = found.springs.par_iter_mut().zip(&found.distances).zip(&go_on).with_min_len(MIN_PAIRS);
         all.for_each(|((spring, distance), goes_on)| {
             let at_start = gap(spring, start);

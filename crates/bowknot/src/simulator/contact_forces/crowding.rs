@@ -1,18 +1,20 @@
 //! Contacts that share a place share its stiffness.
 //!
-//! One vertex may be in contact with several features next to each other, and an edge with all edges that it crosses. If each of
-//! these contacts were as stiff as one alone, a body would be lifted when it slides from one triangle to two. So the contacts
-//! of a vertex with similar normals divide the stiffness of one among them. Shares are continuous in positions.
+//! One vertex may be in contact with several features next to each other, and an edge with all edges that it
+//! crosses. If each of these contacts were as stiff as one alone, a body would be lifted when it slides from
+//! one triangle to two. So the contacts of a vertex with similar normals divide the stiffness of one among
+//! them. Shares are continuous in positions.
 
 use bowknot_dynamics::RepulsionSpring;
 use bowknot_geometry::Vector;
 use rustc_hash::FxHashMap;
 
-/// Distance, in its reach, from which on a contact does not count among its neighbors. From the reach on it counts less.
+/// Distance, in its reach, from which on a contact does not count among its neighbors. From the reach on it
+/// counts less.
 const FADED: f64 = 1.5;
 
-/// Multiplies the stiffness of contacts with their share. `shares` is how much of a contact each is [1], `gaps` its distance [m];
-/// vertices that are not `deformable` do not count.
+/// Multiplies the stiffness of contacts with their share. `shares` is how much of a contact each is [1],
+/// `gaps` its distance [m]; vertices that are not `deformable` do not count.
 pub(super) fn share_stiffness(
     springs: &mut [RepulsionSpring],
     shares: &[f64],

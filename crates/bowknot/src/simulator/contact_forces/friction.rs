@@ -1,8 +1,9 @@
 //! Friction that contacts carry from one time step to the next.
 //!
-//! Friction that holds depends on the past: a body at rest on a slope is held by forces that no slip within the time step
-//! explains. So a contact begins a time step with the ratio of friction to pressure that it ended the last one with. One
-//! that is new, as a vertex has slid to another triangle, takes the ratio of its vertices against the same body.
+//! Friction that holds depends on the past: a body at rest on a slope is held by forces that no slip within
+//! the time step explains. So a contact begins a time step with the ratio of friction to pressure that it
+//! ended the last one with. One that is new, as a vertex has slid to another triangle, takes the ratio of its
+//! vertices against the same body.
 
 use bowknot_constraints::Feature;
 use bowknot_geometry::{Topology, Vector};
@@ -72,8 +73,9 @@ impl FrictionMemory {
     }
 }
 
-/// Calls `visit` with the vertices of both features and the bodies against them, the share of each vertex in its feature, and
-/// the sign of a force on the first feature there. The features of a checkpoint may be anything.
+/// Calls `visit` with the vertices of both features and the bodies against them, the share of each vertex in
+/// its feature, and the sign of a force on the first feature there. The features of a checkpoint may be
+/// anything.
 fn for_each_side(scene: &CollisionScene, features: &[Feature; 2], mut visit: impl FnMut(Side, f64, f64)) {
     let (model, topology) = (scene.model(), scene.model().topology());
     let body = |feature: &Feature| match feature {

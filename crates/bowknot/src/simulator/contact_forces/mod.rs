@@ -1,4 +1,5 @@
-//! The contacts that the dynamics knows of, their forces, and what they remember from one time step to the next.
+//! The contacts that the dynamics knows of, their forces, and what they remember from one time step to the
+//! next.
 
 mod averaging;
 mod contacts;

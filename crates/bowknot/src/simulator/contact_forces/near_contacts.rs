@@ -14,9 +14,10 @@ pub(super) const REACH: f64 = 1.2;
 /// Gap at which the force becomes infinite, in the way from the minimum separation to the contact distance.
 const FLOOR: f64 = 0.4;
 
-/// Height from which down on a pair is a contact even if its features do not face each other, in the way from the minimum
-/// separation to the contact distance. It is a whole one where the rows of the collision stage guard it: what a row holds the
-/// dynamics must know, else it closes the pair in each iteration anew. Higher: tilted normals push bodies that slide.
+/// Height from which down on a pair is a contact even if its features do not face each other, in the way from
+/// the minimum separation to the contact distance. It is a whole one where the rows of the collision stage
+/// guard it: what a row holds the dynamics must know, else it closes the pair in each iteration anew. Higher:
+/// tilted normals push bodies that slide.
 const DEEP: f64 = 0.45;
 
 /// Sine of the angle between two edges below which they count as nearly parallel.
@@ -99,8 +100,8 @@ pub(super) fn near_contacts(resolver: &Resolver, newton: &NewtonBodies) -> Vec<N
     found
 }
 
-/// The normal of a contact. One outside of the cones of its features is turned to their border: a tilted one would push
-/// sliding bodies aside.
+/// The normal of a contact. One outside of the cones of its features is turned to their border: a tilted one
+/// would push sliding bodies aside.
 pub(super) fn turned(
     resolver: &Resolver,
     newton: &NewtonBodies,
@@ -114,8 +115,8 @@ pub(super) fn turned(
     scene.turned(features, normal, x, rigid)
 }
 
-/// How far two edges are from parallel [1]: 1 if they cross at a sine of [`PARALLEL`] or more, and for other features. The closest
-/// points of parallel edges are anywhere along them, and their vertices are contacts.
+/// How far two edges are from parallel [1]: 1 if they cross at a sine of [`PARALLEL`] or more, and for other
+/// features. The closest points of parallel edges are anywhere along them, and their vertices are contacts.
 fn crossing(features: &[Feature; 2], vertices: &[u32; 4], x: &[Point]) -> f64 {
     if !matches!(features, [Feature::Edge(_), Feature::Edge(_)]) {
         return 1.0;
@@ -126,8 +127,8 @@ fn crossing(features: &[Feature; 2], vertices: &[u32; 4], x: &[Point]) -> f64 {
     if product > 0.0 { (first.cross(&second).norm() / product).min(1.0).powi(2) } else { 0.0 }
 }
 
-/// How much of a contact a pair at a height above the minimum separation is, see [`DEEP`], however its features face each
-/// other [1].
+/// How much of a contact a pair at a height above the minimum separation is, see [`DEEP`], however its
+/// features face each other [1].
 fn guarded(height: f64) -> f64 {
     ((DEEP - height) / (DEEP - GUARDED_FLOOR)).clamp(0.0, 1.0)
 }

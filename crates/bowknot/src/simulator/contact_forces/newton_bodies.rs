@@ -1,8 +1,9 @@
 //! Which vertices Newton's method solves together with their contacts.
 //!
-//! Those of bodies that deform, and grains that press on them, be it through other grains: if rows of the collision stage
-//! passed on what lies on such a grain, they and Newton's method would move the body in turn for ever. All other grains
-//! have no forces but those of contacts, and rows hold them, at a fraction of the cost.
+//! Those of bodies that deform, and grains that press on them, be it through other grains: if rows of the
+//! collision stage passed on what lies on such a grain, they and Newton's method would move the body in turn
+//! for ever. All other grains have no forces but those of contacts, and rows hold them, at a fraction of the
+//! cost.
 
 use bowknot_dynamics::Touching;
 use bowknot_geometry::UnionFind;

@@ -1,16 +1,17 @@
-//! What rows of the collision stage carry where the dynamics knows no contact: among grains that press on nothing that
-//! deforms, and between them and obstacles.
+//! What rows of the collision stage carry where the dynamics knows no contact: among grains that press on
+//! nothing that deforms, and between them and obstacles.
 //!
-//! A call starts from what the last one ended with, also that of the last time step. So its few sweeps go on where those
-//! before it ended, and a pile stands, whose weight they would not carry down from its top in one time step.
+//! A call starts from what the last one ended with, also that of the last time step. So its few sweeps go on
+//! where those before it ended, and a pile stands, whose weight they would not carry down from its top in one
+//! time step.
 
 use super::friction::{ContactForce, vertices_of};
 use bowknot_constraints::Feature;
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_twoway::{CollisionScene, PairMultipliers, Resolver};
 
-/// Share of what rows carry that the next call starts from. 1: where rows contradict each other, multipliers would grow from
-/// call to call without bound.
+/// Share of what rows carry that the next call starts from. 1: where rows contradict each other, multipliers
+/// would grow from call to call without bound.
 const KEPT: f64 = 0.95;
 
 /// What rows carry.
@@ -22,8 +23,8 @@ pub(super) struct RowForces {
 }
 
 impl RowForces {
-    /// Begins a time step of `dt` [s] with the contact forces at the end of the last one. Vertices that are `solved` are
-    /// those whose contacts the dynamics knows.
+    /// Begins a time step of `dt` [s] with the contact forces at the end of the last one. Vertices that are
+    /// `solved` are those whose contacts the dynamics knows.
     pub fn begin_step(&mut self, scene: &CollisionScene, carried: &[ContactForce], solved: &[bool], dt: f64) {
         self.scale = scene.mean_mass() / (dt * dt);
         let topology = scene.model().topology();

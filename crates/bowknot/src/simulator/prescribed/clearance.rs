@@ -1,8 +1,8 @@
 //! What is in the place of an obstacle that is to appear.
 //!
-//! **This test is part of the guarantee.** The collision stage keeps what is apart apart; it needs a start without
-//! intersections. So an obstacle appears only if no element of it intersects one of a deformable body, by the exact
-//! predicates of the judge, and none is nearer than the minimum separation of the two.
+//! **This test is part of the guarantee.** The collision stage keeps what is apart apart; it needs a start
+//! without intersections. So an obstacle appears only if no element of it intersects one of a deformable
+//! body, by the exact predicates of the judge, and none is nearer than the minimum separation of the two.
 
 use crate::simulator::start::Enclosure;
 use bowknot_check::{CheckError, Judge, StateOptions};
@@ -12,8 +12,8 @@ use bowknot_scene::BodyKind;
 use bowknot_scene::world::{World, WorldBody};
 use bowknot_twoway::CollisionScene;
 
-/// What is in the way of an obstacle of the world, or of a half-space, numbered after the bodies, in words; none if its
-/// place is clear. `positions` are those of all vertices that collide [m].
+/// What is in the way of an obstacle of the world, or of a half-space, numbered after the bodies, in words;
+/// none if its place is clear. `positions` are those of all vertices that collide [m].
 ///
 /// # Errors
 /// Coordinates beyond what exact arithmetic can take.
@@ -60,8 +60,8 @@ fn is_far(world: &World, scene: &CollisionScene, positions: &[Point], obstacle: 
     (0..world.bodies.len()).filter(|&b| world.bodies[b].kind.is_some()).all(|b| !own.overlaps(&bounds(b)))
 }
 
-/// The collision model in which all that collides is the obstacle with deformable bodies: these are its obstacles, which
-/// form no pairs.
+/// The collision model in which all that collides is the obstacle with deformable bodies: these are its
+/// obstacles, which form no pairs.
 fn alone(world: &World, obstacle: usize) -> CollisionModel {
     let filter = |(body, filter): (usize, &BodyFilter)| match world.bodies[body].kind {
         _ if body == obstacle => BodyFilter { obstacle: false, self_collision: false, ..*filter },

@@ -1,16 +1,17 @@
-//! Where obstacles and pins end in a time step: at their keyframes, or, if something stops one, before that. Otherwise
-//! the dynamics would compute with it where it cannot go, and the collision stage without, in each iteration.
+//! Where obstacles and pins end in a time step: at their keyframes, or, if something stops one, before that.
+//! Otherwise the dynamics would compute with it where it cannot go, and the collision stage without, in each
+//! iteration.
 
 use bowknot_geometry::Point;
 use bowknot_scene::world::World;
 
-/// Share of its way that an obstacle or pin must make to be led on in a time step, where a collision problem has not
-/// converged. Larger: more is held back that would get through. Smaller: targets are computed more often with pins and
-/// obstacles where they cannot go.
+/// Share of its way that an obstacle or pin must make to be led on in a time step, where a collision problem
+/// has not converged. Larger: more is held back that would get through. Smaller: targets are computed more
+/// often with pins and obstacles where they cannot go.
 const LED_ON: f64 = 0.5;
 
-/// What is held back leaves this share of the contact distance of its way. Larger: it waits farther from what stops it.
-/// Smaller: what touches it has less room to move.
+/// What is held back leaves this share of the contact distance of its way. Larger: it waits farther from what
+/// stops it. Smaller: what touches it has less room to move.
 const ROOM: f64 = 0.5;
 
 /// Share of the contact distance up to which it counts as having arrived.
@@ -44,9 +45,9 @@ impl Ends {
         led(world).all(|vertices| farthest(vertices, prescribed, x, &self.places) <= ARRIVED * delta)
     }
 
-    /// After a collision problem: what it has not moved to its end stops where it is, less some room of its way since the
-    /// `start` of the time step. At the minimum separation nothing that touches it could move toward it. `delta`: the
-    /// contact distance [m].
+    /// After a collision problem: what it has not moved to its end stops where it is, less some room of its
+    /// way since the `start` of the time step. At the minimum separation nothing that touches it could move
+    /// toward it. `delta`: the contact distance [m].
     pub fn hold_back(
         &mut self,
         world: &World,
@@ -79,7 +80,8 @@ fn led(world: &World) -> impl Iterator<Item = impl Iterator<Item = u32> + Clone 
     obstacles.chain(pins).map(|(range, list)| range.chain(list.iter().copied()))
 }
 
-/// Largest distance of a prescribed vertex that collides from its place at `a`, which has these alone, to that at `b` [m].
+/// Largest distance of a prescribed vertex that collides from its place at `a`, which has these alone, to
+/// that at `b` [m].
 fn farthest(vertices: impl Iterator<Item = u32>, prescribed: &[bool], a: &[Point], b: &[Point]) -> f64 {
     let prescribed = vertices.map(|v| v as usize).filter(|&v| v < a.len() && prescribed[v]);
     prescribed.map(|v| (b[v] - a[v]).norm()).fold(0.0, f64::max)

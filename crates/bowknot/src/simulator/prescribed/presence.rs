@@ -1,9 +1,10 @@
 //! Obstacles that appear and vanish, between two time steps.
 //!
-//! **No path crosses.** Which obstacles are there changes only between time steps, so all iterations of a time step are
-//! computed with one collision model. One that is not there meets nothing, and what moves through its place crosses
-//! nothing. It comes back only if its place is clear (`clearance.rs`), so that the time step starts from a state without
-//! intersections, from which on the collision stage holds it as any other.
+//! **No path crosses.** Which obstacles are there changes only between time steps, so all iterations of a
+//! time step are computed with one collision model. One that is not there meets nothing, and what moves
+//! through its place crosses nothing. It comes back only if its place is clear (`clearance.rs`), so that the
+//! time step starts from a state without intersections, from which on the collision stage holds it as any
+//! other.
 
 use super::clearance::in_the_way;
 use crate::simulator::Simulator;
@@ -16,7 +17,8 @@ use bowknot_geometry::CollisionModel;
 use bowknot_scene::world::World;
 
 impl Simulator {
-    /// Which bodies of the world, then which half-spaces, are there during the next time step. Deformable ones always are.
+    /// Which bodies of the world, then which half-spaces, are there during the next time step. Deformable
+    /// ones always are.
     pub fn present(&self) -> &[bool] {
         &self.present
     }
@@ -26,7 +28,8 @@ impl Simulator {
         self.world.collision_of(&self.present)
     }
 
-    /// Puts the obstacles that are not there where they belong at `time`, so that they do not move within the time step.
+    /// Puts the obstacles that are not there where they belong at `time`, so that they do not move within the
+    /// time step.
     pub(crate) fn place_absent(&mut self, time: f64) {
         let Self { world, present, positions, .. } = self;
         for (body, _) in world.bodies.iter().zip(present).filter(|(_, present)| !**present) {
@@ -35,8 +38,8 @@ impl Simulator {
         }
     }
 
-    /// Lets obstacles vanish and appear at the end of a time step. Those that would meet something wait. What was near one
-    /// that vanishes wakes, and so does what is near one that appears.
+    /// Lets obstacles vanish and appear at the end of a time step. Those that would meet something wait. What
+    /// was near one that vanishes wakes, and so does what is near one that appears.
     pub(crate) fn update_presence(&mut self, statistics: &mut StepStatistics) -> Result<(), SimulationError> {
         let Self { world, present, resolver, positions, dt, .. } = self;
         let wanted = world.present(statistics.time, *dt);
@@ -57,8 +60,8 @@ impl Simulator {
         if changed.contains(&true) { self.follow_presence(&changed) } else { Ok(()) }
     }
 
-    /// Follows a change of which obstacles are there: wakes bodies, forgets the contacts of those that are gone, and
-    /// finds contacts anew.
+    /// Follows a change of which obstacles are there: wakes bodies, forgets the contacts of those that are
+    /// gone, and finds contacts anew.
     fn follow_presence(&mut self, changed: &[bool]) -> Result<(), SimulationError> {
         let mut carried = self.carried();
         let is_there = |feature: &Feature| is_there(&self.world, &self.present, feature);
@@ -83,8 +86,8 @@ impl Simulator {
         self.take_out(carried)
     }
 
-    /// Gives the collision stage the filters that are in force: of obstacles that are there, and of bodies asleep, which
-    /// are obstacles.
+    /// Gives the collision stage the filters that are in force: of obstacles that are there, and of bodies
+    /// asleep, which are obstacles.
     pub(crate) fn apply_filters(&mut self) -> Result<(), SimulationError> {
         let Self { world, present, resolver, sleeping, step, .. } = self;
         let (mut filters, half_spaces) = world.filters(present);

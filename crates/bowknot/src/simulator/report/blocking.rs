@@ -9,7 +9,8 @@ use std::fmt;
 /// A vertex that had far to go in a slow time step, and what held it back.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WaitingElements {
-    /// The two elements of which one stops the other, or the vertex alone; vertices are numbered as in their mesh.
+    /// The two elements of which one stops the other, or the vertex alone; vertices are numbered as in their
+    /// mesh.
     pub elements: Vec<String>,
     /// Names of the bodies of these elements.
     pub bodies: Vec<String>,

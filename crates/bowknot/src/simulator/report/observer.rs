@@ -97,14 +97,14 @@ pub trait SimulationObserver {
         ControlFlow::Continue(())
     }
 
-    /// Called after [`Self::accepted`], with what tells why the vertices that have farthest to go wait. Telling takes
-    /// about as long as a forward step, and only if it is asked for.
+    /// Called after [`Self::accepted`], with what tells why the vertices that have farthest to go wait.
+    /// Telling takes about as long as a forward step, and only if it is asked for.
     fn waiting(&mut self, tell: &dyn Fn() -> Vec<WaitingElements>) {
         let _ = tell;
     }
 
-    /// Whether [`Self::accepted`] must see each state. If not, a backend may make several two-way steps at once and
-    /// call [`Self::advanced`] in its place.
+    /// Whether [`Self::accepted`] must see each state. If not, a backend may make several two-way steps at
+    /// once and call [`Self::advanced`] in its place.
     fn sees_each_state(&self) -> bool {
         true
     }

@@ -65,8 +65,8 @@ pub struct StepStatistics {
     /// Name of the body with the largest remaining distance, if the last collision problem did not converge.
     #[serde(default)]
     pub slowest_body: Option<String>,
-    /// What held back the vertices that had farthest to go, if a collision problem took 32 two-way steps or more, or
-    /// did not converge although nothing cut it short.
+    /// What held back the vertices that had farthest to go, if a collision problem took 32 two-way steps or
+    /// more, or did not converge although nothing cut it short.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub waits: Vec<WaitingElements>,
     /// Largest distance by which an obstacle or pin lags behind its keyframe at the end [m].
@@ -76,8 +76,8 @@ pub struct StepStatistics {
     /// keyframes at the end [m].
     #[serde(default)]
     pub waiting: BTreeMap<String, f64>,
-    /// The obstacles that are not there in the next time step, by name, and what is in the place of those that wait to
-    /// appear, in words.
+    /// The obstacles that are not there in the next time step, by name, and what is in the place of those
+    /// that wait to appear, in words.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub absent: BTreeMap<String, Option<String>>,
     /// Bound on the kinetic energy that separation to the contact distance injected [J], the sum over all
@@ -109,8 +109,8 @@ pub struct StepStatistics {
     /// The tolerance of `residual_m` that ends the Newton iterations of a time step [m]; 0 if there is none.
     #[serde(default)]
     pub tolerance_m: f64,
-    /// Whether the time step ended as a solution: `residual_m` at most `tolerance_m`, if there is a tolerance, and the
-    /// last collision problem converged. True for lines that do not say it.
+    /// Whether the time step ended as a solution: `residual_m` at most `tolerance_m`, if there is a
+    /// tolerance, and the last collision problem converged. True for lines that do not say it.
     #[serde(default = "not_said")]
     pub solved: bool,
     /// Where forces are out of balance in a time step that is not solved.
@@ -161,8 +161,8 @@ pub struct StepSeconds {
     pub backward: f64,
     /// Forward steps.
     pub forward: f64,
-    /// Those of `search`, `evaluate`, `backward` and `forward` in which a GPU computed, by its time stamps; none on the CPU
-    /// and on a GPU without time stamps, where all four are 0 and `other` has them.
+    /// Those of `search`, `evaluate`, `backward` and `forward` in which a GPU computed, by its time stamps;
+    /// none on the CPU and on a GPU without time stamps, where all four are 0 and `other` has them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub device: Option<f64>,
     /// Everything else: observers such as `--check` and `--trace`, and the loop itself.
@@ -204,7 +204,8 @@ impl StepStatistics {
         self.slowest_body = call.slowest_body.filter(|_| !call.converged).map(name_of);
     }
 
-    /// Fills in with which `residual` the iterations ended, and where they are out of balance if the time step is not solved.
+    /// Fills in with which `residual` the iterations ended, and where they are out of balance if the time
+    /// step is not solved.
     pub(crate) fn end_iterations(
         &mut self,
         search: &Search<'_>,

@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 /// Where a time step that is not solved is out of balance.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Unsolved {
-    /// Name of the body with the part that is farthest from balance, and of what presses on that part most, if
-    /// anything does: a body, an obstacle, a half-space, or the same body again. If forces balance and only the
-    /// collision stage ended short: the bodies of what waits.
+    /// Name of the body with the part that is farthest from balance, and of what presses on that part most,
+    /// if anything does: a body, an obstacle, a half-space, or the same body again. If forces balance and
+    /// only the collision stage ended short: the bodies of what waits.
     pub bodies: Vec<String>,
     /// Place [m]: the strongest contact between the two; without one the mean of the part's vertices.
     pub place_m: [f64; 3],
@@ -77,7 +77,8 @@ impl Search<'_> {
         }
     }
 
-    /// What the collision stage waits for: the first of the `waits`, or the slowest body; none if neither is known.
+    /// What the collision stage waits for: the first of the `waits`, or the slowest body; none if neither is
+    /// known.
     pub fn of_collisions(&self, waits: &[WaitingElements], slowest_body: Option<u32>) -> Option<Unsolved> {
         if let Some(wait) = waits.first() {
             return Some(Unsolved { bodies: wait.bodies.clone(), place_m: wait.place_m });
@@ -87,7 +88,8 @@ impl Search<'_> {
         Some(Unsolved { bodies, place_m: self.mean(body, |_| true) })
     }
 
-    /// The bodies and half-spaces that press on a component, by index; half-spaces count down from `u32::MAX`.
+    /// The bodies and half-spaces that press on a component, by index; half-spaces count down from
+    /// `u32::MAX`.
     fn pressing(&self, component: u32) -> BTreeMap<u32, Pressing> {
         let Self { world, contacts, forces, positions } = *self;
         let mut pressing: BTreeMap<u32, Pressing> = BTreeMap::new();

@@ -9,8 +9,8 @@
 //! vertices along the straight line from its place to its keyframe, a part of the way at a time, and never
 //! beyond. Bodies that are awake form pairs with those asleep, so the collision stage keeps them apart
 //! wherever they go, and a place at the end that is only predicted does no harm: what wakes later than it is
-//! touched has been an unyielding obstacle for a moment. For the same reason bodies at rest need not count as movers. If
-//! they did, two that are near each other without touching would wake each other in turn for ever.
+//! touched has been an unyielding obstacle for a moment. For the same reason bodies at rest need not count as
+//! movers. If they did, two that are near each other without touching would wake each other in turn for ever.
 
 use bowknot_geometry::{Aabb, Point};
 use bowknot_scene::world::World;

@@ -3,9 +3,9 @@
 //! Engines of rigid bodies (Box2D, Bullet, PhysX, Jolt) put *islands* to sleep: bodies connected by contacts
 //! that have all been slow for about half a second. They differ in what slow means. A limit on speeds, as in
 //! Box2D and Bullet, mistakes the tremble of a pile for motion and a slow slide for rest. Here, as in Jolt
-//! (`Body::UpdateSleepStateInternal`), a body is at rest while its points stay near the places where they were
-//! when its time began; the time begins anew when one leaves. All vertices of a body are tested, since it can
-//! bend about any three points.
+//! (`Body::UpdateSleepStateInternal`), a body is at rest while its points stay near the places where they
+//! were when its time began; the time begins anew when one leaves. All vertices of a body are tested, since
+//! it can bend about any three points.
 //!
 //! Unlike there, an island must be held by something at rest: an obstacle, a half-space or a pin. What floats
 //! without gravity may drift as slowly as it likes, and the momentum of free bodies is not changed.
@@ -94,8 +94,8 @@ impl Sleep {
         self.state.calm_steps.fill(0);
     }
 
-    /// Records where the bodies are at the end of a time step, and which have touched in it. Bodies at rest fall
-    /// asleep, as islands; those that others have touched wake. Returns whether any did.
+    /// Records where the bodies are at the end of a time step, and which have touched in it. Bodies at rest
+    /// fall asleep, as islands; those that others have touched wake. Returns whether any did.
     pub fn update(&mut self, world: &World, positions: &[Point], touching: &Touching, hold: &Hold) -> bool {
         self.count_calm_steps(world, positions);
         let islands = self.islands(world, touching, hold);

@@ -20,7 +20,8 @@ pub(crate) struct Enclosure<'a> {
 }
 
 impl<'a> Enclosure<'a> {
-    /// That of a body of the world, at the `positions` of all vertices that collide [m]; none if it is not closed.
+    /// That of a body of the world, at the `positions` of all vertices that collide [m]; none if it is not
+    /// closed.
     pub fn new(world: &'a World, positions: &'a [Point], body: usize) -> Option<Self> {
         let own = &world.bodies[body].vertices;
         let triangles = world.collision.topology().triangles.iter();
@@ -30,8 +31,8 @@ impl<'a> Enclosure<'a> {
         is_closed.then_some(Self { world, positions, triangles, bounds })
     }
 
-    /// Whether a connected part of another body lies inside. Looks at the first [`MAX_PARTS`] of them, and takes it that
-    /// none intersects the surface.
+    /// Whether a connected part of another body lies inside. Looks at the first [`MAX_PARTS`] of them, and
+    /// takes it that none intersects the surface.
     pub fn holds(&self, other: usize) -> bool {
         let component = self.world.collision.vertex_component();
         let mut seen = Vec::new();
@@ -49,7 +50,8 @@ impl<'a> Enclosure<'a> {
     }
 }
 
-/// Deformable bodies that start inside of a closed obstacle that is `present`, which they can never leave, in words.
+/// Deformable bodies that start inside of a closed obstacle that is `present`, which they can never leave, in
+/// words.
 pub(crate) fn enclosed_bodies(world: &World, present: &[bool]) -> Vec<String> {
     let is_obstacle = |body: &WorldBody| body.kind.is_none();
     let obstacles = world.bodies.iter().zip(present).enumerate();
@@ -59,8 +61,8 @@ pub(crate) fn enclosed_bodies(world: &World, present: &[bool]) -> Vec<String> {
         for (b, body) in world.bodies.iter().enumerate().filter(|(_, body)| !is_obstacle(body)) {
             if world.collision.may_collide(b as u32, o as u32) && enclosure.holds(b) {
                 found.push(format!(
-                    "{} starts inside of obstacle {}, which is closed, and cannot leave it: are scale, up and \
-                     translate of both right?",
+                    "{} starts inside of obstacle {}, which is closed, and cannot leave it: are scale, up \
+                     and translate of both right?",
                     body.name, obstacle.name
                 ));
             }
@@ -69,8 +71,8 @@ pub(crate) fn enclosed_bodies(world: &World, present: &[bool]) -> Vec<String> {
     found
 }
 
-/// Whether a ray in a fixed general direction crosses a triangle. Source: Moeller and Trumbore, "Fast, minimum
-/// storage ray-triangle intersection", 1997.
+/// Whether a ray in a fixed general direction crosses a triangle. Source: Moeller and Trumbore, "Fast,
+/// minimum storage ray-triangle intersection", 1997.
 fn ray_crosses(start: &Point, [a, b, c]: &[Point; 3]) -> bool {
     let direction = Vector::new(0.267_261, 0.534_522, 0.801_784);
     let (e1, e2) = (b - a, c - a);

@@ -6,9 +6,9 @@ use bowknot_geometry::Point;
 use bowknot_scene::world::ObstacleMotion;
 
 impl Simulator {
-    /// Refuses motions of obstacles, and of pins that hold from the beginning, that lead so far within `steps` time
-    /// steps that rounding exceeds the minimum separation. The first time step on which they did would be refused
-    /// otherwise. Costs little beside a time step: most vertices are looked at once.
+    /// Refuses motions of obstacles, and of pins that hold from the beginning, that lead so far within
+    /// `steps` time steps that rounding exceeds the minimum separation. The first time step on which they did
+    /// would be refused otherwise. Costs little beside a time step: most vertices are looked at once.
     ///
     /// # Errors
     /// The time step and the body of the farthest vertex.

@@ -24,8 +24,8 @@ const NEIGHBOR_EDGES: usize = 3;
 pub struct NearStart {
     /// Names of the two bodies; a half-space has that of its obstacle.
     pub bodies: [String; 2],
-    /// Whether they are folds of one connected part. These need only half of their distance at the start. Others
-    /// are pushed apart to their contact distance.
+    /// Whether they are folds of one connected part. These need only half of their distance at the start.
+    /// Others are pushed apart to their contact distance.
     pub within_part: bool,
     /// Number of pairs of elements, neighbors along the surface not counted.
     pub pairs: usize,

@@ -63,8 +63,8 @@ fn of_pair(world: &World, body: u32, other: Other) -> Option<String> {
     let name = world.name_of(body);
     match other {
         Other::Itself => Some(format!(
-            "{name} intersects itself: `bowknot repair MESH --out FILE` welds seams whose panels only lie together; \
-             anything else must be mended in the mesh"
+            "{name} intersects itself: `bowknot repair MESH --out FILE` welds seams whose panels only lie \
+             together; anything else must be mended in the mesh"
         )),
         Other::HalfSpace(plane) => {
             let half_space = &world.collision.half_spaces()[plane as usize];
@@ -73,8 +73,8 @@ fn of_pair(world: &World, body: u32, other: Other) -> Option<String> {
             let [x, y, z] = <[f64; 3]>::from(half_space.normal).map(|c| (c * 1e3).round() / 1e3 + 0.0);
             let ground = world.half_space_names.get(plane as usize).map_or("", String::as_str);
             Some(format!(
-                "{name} lies up to {} below half-space {ground}: move {name} by more than that along ({x}, {y}, {z}), \
-                 by `translate`",
+                "{name} lies up to {} below half-space {ground}: move {name} by more than that along ({x}, \
+                 {y}, {z}), by `translate`",
                 length(depth)
             ))
         }
@@ -90,8 +90,8 @@ fn of_pair(world: &World, body: u32, other: Other) -> Option<String> {
                 ""
             };
             Some(format!(
-                "{name} and {other} overlap: move {name} by {} along {toward}, or {other} as far along {away}, by \
-                 `translate`{worn}",
+                "{name} and {other} overlap: move {name} by {} along {toward}, or {other} as far along \
+                 {away}, by `translate`{worn}",
                 length(motion)
             ))
         }
@@ -180,7 +180,8 @@ impl<'a> Pair<'a> {
         Self { moved, other, judge, elements, parts, closed }
     }
 
-    /// The smallest motion found that takes the two apart, and the names of its direction and of the opposite.
+    /// The smallest motion found that takes the two apart, and the names of its direction and of the
+    /// opposite.
     fn separate(&self) -> Option<(f64, [&'static str; 2])> {
         let [a, b] = [self.moved, self.other].map(Aabb::of_points);
         // From here on the bounding boxes are disjoint.
@@ -269,7 +270,8 @@ mod tests {
 
     fn sheet(z: f64) -> String {
         format!(
-            "[[body]]\nname = \"sheet\"\nshape = {{ type = \"sheet\", size = [2.0, 2.0], edge = 0.1 }}\ntranslate = [0.01, 0.02, {z}]\n"
+            "[[body]]\nname = \"sheet\"\nshape = {{ type = \"sheet\", size = [2.0, 2.0], edge = 0.1 \
+             }}\ntranslate = [0.01, 0.02, {z}]\n"
         )
     }
 
@@ -287,7 +289,8 @@ mod tests {
     #[test]
     fn inside_of_an_obstacle_is_not_apart() {
         // A small sheet through the ball's top: by 0.2 m downward it would be inside.
-        let small = "[[body]]\nname = \"sheet\"\nshape = { type = \"sheet\", size = [0.1, 0.1], edge = 0.05 }\n\
+        let small = "[[body]]\nname = \"sheet\"\nshape = \
+                     { type = \"sheet\", size = [0.1, 0.1], edge = 0.05 }\n\
                      rotate = [90.0, 0.0, 0.0]\ntranslate = [0.0, 0.0, 0.28]\n";
         let found = advice_of(&format!("{small}{BALL}"));
         assert!(found[0].contains("move sheet by 0.07") && found[0].contains("along +z"), "{found:?}");
@@ -296,7 +299,8 @@ mod tests {
     #[test]
     fn an_open_garment_is_moved_by_as_little_as_helps() {
         // Wide enough for the ball, but 3 cm off to one side; not contained, although the ball is within it.
-        let tube = "[[body]]\nname = \"skirt\"\nshape = { type = \"tube\", radius = 0.35, length = 0.2, edge = 0.03 }\n\
+        let tube = "[[body]]\nname = \"skirt\"\nshape = \
+                    { type = \"tube\", radius = 0.35, length = 0.2, edge = 0.03 }\n\
                     translate = [0.08, 0.0, 0.0]\nrotate = [0.0, 90.0, 0.0]\n";
         let found = advice_of(&format!("{tube}{BALL}"));
         assert!(found[0].contains("move skirt by 0.03") && found[0].contains("along -x"), "{found:?}");
@@ -308,10 +312,8 @@ mod tests {
         let found = advice_of(&(sheet(-0.012) + ground));
         assert_eq!(
             found,
-            [
-                "sheet lies up to 0.013 m below half-space ground: move sheet by more than that along (0, 0, 1), by \
-              `translate`"
-            ]
+            ["sheet lies up to 0.013 m below half-space ground: move sheet by more than that along (0, 0, \
+                 1), by `translate`"]
         );
     }
 

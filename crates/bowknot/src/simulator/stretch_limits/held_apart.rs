@@ -55,7 +55,8 @@ impl fmt::Display for HeldApart {
                 let [distance, allowed] = [distance_m, allowed_m].map(|m| 1e3 * m);
                 write!(
                     f,
-                    "vertices {a} and {b} of {body} are held {distance:.1} mm apart, edges allow {allowed:.1} mm"
+                    "vertices {a} and {b} of {body} are held {distance:.1} mm apart, edges allow \
+                     {allowed:.1} mm"
                 )
             }
             None => write!(f, "pins hold edges of {body} at {excess:.3} times their stretch limit"),

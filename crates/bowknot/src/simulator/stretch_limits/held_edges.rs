@@ -1,14 +1,15 @@
 //! Limits of edges between prescribed vertices that are held farther apart than the limits allow.
 //!
-//! Prescribed vertices go where they are told, so the edges between them yield: each gets the length that it has where edges
-//! exceed their limits least (`least_excess.rs`). That follows from the places of the prescribed vertices alone. All limits
-//! can then be met at once, since there is a place for every vertex at which they are, and edges that need not be longer keep
-//! theirs. Where nothing asks for it any more, an edge goes back to its limit as fast as the forces shorten it: a limit that
-//! were below its length at once would be a wall in its way.
+//! Prescribed vertices go where they are told, so the edges between them yield: each gets the length that it
+//! has where edges exceed their limits least (`least_excess.rs`). That follows from the places of the
+//! prescribed vertices alone. All limits can then be met at once, since there is a place for every vertex at
+//! which they are, and edges that need not be longer keep theirs. Where nothing asks for it any more, an edge
+//! goes back to its limit as fast as the forces shorten it: a limit that were below its length at once would
+//! be a wall in its way.
 //!
-//! By Kirszbraun's theorem a map from the prescribed vertices at rest to their places that lengthens no distance by more than
-//! a factor goes on to all vertices with that factor. So nothing has to be looked for while no two of them are farther apart
-//! than their distance at rest times the stretch limit.
+//! By Kirszbraun's theorem a map from the prescribed vertices at rest to their places that lengthens no
+//! distance by more than a factor goes on to all vertices with that factor. So nothing has to be looked for
+//! while no two of them are farther apart than their distance at rest times the stretch limit.
 
 use super::held_apart::{HeldPair, OverLimit};
 use super::least_excess::LimitedGraph;
@@ -20,15 +21,15 @@ use rustc_hash::FxHashMap;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-/// Share of its limit by which an edge may be too long before it counts. Larger: limits are exceeded by more before anybody is told.
-/// Smaller: the tolerance of the search for the least excess shows.
+/// Share of its limit by which an edge may be too long before it counts. Larger: limits are exceeded by more
+/// before anybody is told. Smaller: the tolerance of the search for the least excess shows.
 const SLACK: f64 = 2e-3;
 
 /// Vertices that one thread takes at least.
 const MIN_VERTICES: usize = 64;
 
-/// Where an edge that goes back begins, in the way on which its force grows without bound. 1: it is at its wall, where Newton's
-/// method begins badly. Smaller: edges under large loads do not go back.
+/// Where an edge that goes back begins, in the way on which its force grows without bound. 1: it is at its
+/// wall, where Newton's method begins badly. Smaller: edges under large loads do not go back.
 const GOES_BACK: f64 = 0.99;
 
 /// The edges that yield.
@@ -79,8 +80,8 @@ impl HeldEdges {
         self.patches.iter().filter_map(Patch::over).chain(between).reduce(larger)
     }
 
-    /// Begins a time step at positions `x` [m], for edges among the `limited` ones; `before` are those that yielded in the
-    /// last one, with their limits. Returns whether limits may have changed.
+    /// Begins a time step at positions `x` [m], for edges among the `limited` ones; `before` are those that
+    /// yielded in the last one, with their limits. Returns whether limits may have changed.
     pub fn begin_step(
         &mut self,
         limited: &[DistanceLimit],
@@ -102,7 +103,8 @@ impl HeldEdges {
         others || moved || went_back || !self.going_back.is_empty()
     }
 
-    /// Goes on within a time step with the prescribed vertices at other places in `x` [m]. Returns whether limits may have changed.
+    /// Goes on within a time step with the prescribed vertices at other places in `x` [m]. Returns whether
+    /// limits may have changed.
     pub fn go_on(&mut self, rest: &[Point], x: &[Point]) -> bool {
         let mut changed = false;
         for patch in &mut self.patches {
@@ -112,7 +114,8 @@ impl HeldEdges {
     }
 }
 
-/// The edges of those that yielded `before` that are still too long at `x`, by index, with limits [m] to begin from.
+/// The edges of those that yielded `before` that are still too long at `x`, by index, with limits [m] to
+/// begin from.
 fn going_back(limited: &[DistanceLimit], x: &[Point], before: &[DistanceLimit]) -> Vec<(u32, f64)> {
     if before.is_empty() {
         return Vec::new();
@@ -194,8 +197,8 @@ impl Patch {
         Some(OverLimit { edge, excess: excess(most), pair: self.pair_over(most) })
     }
 
-    /// Finds the limits at which the prescribed vertices can be at `places` [m]; returns whether they may be others than
-    /// before.
+    /// Finds the limits at which the prescribed vertices can be at `places` [m]; returns whether they may be
+    /// others than before.
     fn update(&mut self, rest: &[Point], places: &[Point]) -> bool {
         let of = |points: &[Point], v: &u32| points[*v as usize];
         let held = &self.vertices[self.free..];
@@ -221,7 +224,8 @@ impl Patch {
         true
     }
 
-    /// Whether all limits can certainly be met: no two prescribed vertices are too far apart, in comparison with `rest`.
+    /// Whether all limits can certainly be met: no two prescribed vertices are too far apart, in comparison
+    /// with `rest`.
     fn can_be_met(&self, rest: &[Point]) -> bool {
         let most = ((1.0 + SLACK) * self.stretch).powi(2);
         let places = &self.places;
@@ -231,8 +235,8 @@ impl Patch {
         })
     }
 
-    /// Places of all vertices to start from: displacements are means of those of the prescribed ones, with weights of one
-    /// over the squared distance at `rest`.
+    /// Places of all vertices to start from: displacements are means of those of the prescribed ones, with
+    /// weights of one over the squared distance at `rest`.
     fn guess(&self, rest: &[Point]) -> Vec<Point> {
         let held = &rest[self.free..];
         let moved: Vec<Vector> = self.places.iter().zip(held).map(|(x, rest)| x - rest).collect();
@@ -251,8 +255,8 @@ impl Patch {
         points
     }
 
-    /// The two prescribed vertices that are farthest beyond what edges allow on a way over an `edge`; none if edges
-    /// allow all.
+    /// The two prescribed vertices that are farthest beyond what edges allow on a way over an `edge`; none if
+    /// edges allow all.
     fn pair_over(&self, edge: u32) -> Option<HeldPair> {
         let ([a, b], limit) = self.edges[edge as usize];
         let [from_a, from_b] = [a, b].map(|v| self.ways_from(v));

@@ -1,9 +1,9 @@
 //! Where edges exceed their limits least, in squares.
 //!
-//! With l_e the length of an edge and L_e its limit, the energy is E = sum_e max(0, l_e - L_e)^2 / (2 L_e). It is convex, so all
-//! of its minima have the same excess l_e - L_e in each edge, which is 0 where the limits can be met. A chain of edges that is
-//! held at both ends is stretched evenly. Nesterov's method with restarts (O'Donoghue and Candes 2015), scaled by the
-//! diagonal, finds a minimum.
+//! With l_e the length of an edge and L_e its limit, the energy is E = sum_e max(0, l_e - L_e)^2 / (2 L_e).
+//! It is convex, so all of its minima have the same excess l_e - L_e in each edge, which is 0 where the
+//! limits can be met. A chain of edges that is held at both ends is stretched evenly. Nesterov's method with
+//! restarts (O'Donoghue and Candes 2015), scaled by the diagonal, finds a minimum.
 
 use bowknot_geometry::{Point, Vector};
 use rayon::prelude::*;
@@ -11,7 +11,8 @@ use rayon::prelude::*;
 /// Steps at most. An excess spreads over about as many edges as a third of them.
 const MOST_STEPS: usize = 1000;
 
-/// Longest step of a vertex at the end, in the mean limit. Smaller: the excess is distributed better, in more steps.
+/// Longest step of a vertex at the end, in the mean limit. Smaller: the excess is distributed better, in more
+/// steps.
 const TOLERANCE: f64 = 1e-5;
 
 /// Vertices that one thread takes at least.
@@ -128,7 +129,8 @@ mod tests {
 
     #[test]
     fn limits_that_can_be_met_are_met() {
-        // A fan around a free vertex, which starts far away; one whose limits contradict each other keeps the least excess.
+        // A fan around a free vertex, which starts far away; one whose limits contradict each other keeps the
+        // least excess.
         let held = [0.0_f64, 2.0, 4.0].map(|angle| Point::new(angle.cos(), angle.sin(), 0.0));
         let settled = |limit: f64| {
             let edges: Vec<([u32; 2], f64)> = (1..4).map(|v| ([0, v], limit)).collect();

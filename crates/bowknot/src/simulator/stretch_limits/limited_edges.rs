@@ -18,15 +18,16 @@ use rayon::prelude::*;
 /// Share of its limit above which an edge counts as taut.
 const TAUT: f64 = 0.98;
 
-/// Way beyond its limit within which the force of an edge grows without bound [1], most of the way to its row. Larger:
-/// edges are longer. Smaller: the system is stiffer.
+/// Way beyond its limit within which the force of an edge grows without bound [1], most of the way to its
+/// row. Larger: edges are longer. Smaller: the system is stiffer.
 pub(super) const ROOM: f64 = 0.8 * (GUARDED_STRETCH - 1.0);
 
-/// The part of the way that is left to an edge that starts far beyond its limit, so that it is pulled back gently.
+/// The part of the way that is left to an edge that starts far beyond its limit, so that it is pulled back
+/// gently.
 const LEFT: f64 = 0.3;
 
-/// How much farther an edge that starts behind its row may be, per meter that it starts behind it [1]. Above 1, so that those
-/// a little behind are held as all others, and the force does not jump.
+/// How much farther an edge that starts behind its row may be, per meter that it starts behind it [1]. Above
+/// 1, so that those a little behind are held as all others, and the force does not jump.
 const YIELD: f64 = 3.0;
 
 /// Edges that one thread looks at, at least.
@@ -120,8 +121,8 @@ impl LimitedEdges {
     }
 }
 
-/// Length at which the force of an edge with this `limit` becomes infinite, if it is `first` long at the start of the time
-/// step [m].
+/// Length at which the force of an edge with this `limit` becomes infinite, if it is `first` long at the
+/// start of the time step [m].
 fn longest(limit: f64, first: f64) -> f64 {
     let room = ROOM * limit;
     let wall = limit + room;

@@ -246,9 +246,10 @@ fn for_device(springs: &LinearSprings) -> AssemblySprings<'_> {
     AssemblySprings { springs: springs.all(), starts: springs.starts(), entries: springs.all_entries() }
 }
 
-/// Translates each of the `groups` of components at the trial so that its linear momentum at the end of the time step is that
-/// of the forces on it in its free directions, in double precision: inertia and the forces of air balance where the
-/// translation minimizes them, and forces within a group have no sum. On the device positions and sums are rounded to single precision.
+/// Translates each of the `groups` of components at the trial so that its linear momentum at the end of the
+/// time step is that of the forces on it in its free directions, in double precision: inertia and the forces
+/// of air balance where the translation minimizes them, and forces within a group have no sum. On the device
+/// positions and sums are rounded to single precision.
 pub fn conserve_momentum(
     model: &DynamicsModel,
     params: &DynamicsParams,

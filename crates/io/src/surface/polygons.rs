@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-/// Stands for an index that a corner does not have. Half of the size of an `Option<u32>`: meshes have millions
-/// of corners.
+/// Stands for an index that a corner does not have. Half of the size of an `Option<u32>`: meshes have
+/// millions of corners.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// A corner of a polygon.
@@ -27,7 +27,8 @@ impl Corner {
         (self.texture != NONE).then_some(self.texture)
     }
 
-    /// Number of its normal: corners of a vertex with one number are smooth, others have an edge between them.
+    /// Number of its normal: corners of a vertex with one number are smooth, others have an edge between
+    /// them.
     pub fn normal(&self) -> Option<u32> {
         (self.normal != NONE).then_some(self.normal)
     }
