@@ -10,7 +10,8 @@ fn main() {
     let named = |index: usize, name: String| arguments.get(index).is_none_or(|a| a == "all" || *a == name);
     let settings = arguments.get(2..).unwrap_or_default().to_vec();
     println!(
-        "mean speed over the time steps 23 to 25 [m/s] at mu = 0, 0.1, 0.3, 0.5; way from 0.3 to 1.3 s at mu = 0.5 [mm]"
+        "mean speed over the time steps 23 to 25 [m/s] at mu = 0, 0.1, 0.3, 0.5; way from 0.3 to 1.3 s at mu \
+         = 0.5 [mm]"
     );
     for slider in Slider::ALL.into_iter().filter(|s| named(0, format!("{s:?}"))) {
         for ground in Ground::ALL.into_iter().filter(|g| named(1, format!("{g:?}"))) {

@@ -245,7 +245,8 @@ impl Slope {
         let along = Vector::new(heading.cos(), heading.sin(), 0.0);
         let gravity = GRAVITY * (sine * along - cosine * Vector::z());
         let text = format!(
-            "[simulation]\ndt = {:?}\ngravity = [{:?}, {:?}, {:?}]\n[solver.sleep]\nenabled = false\n[contact]\ndelta = {DELTA}\n{}{}",
+            "[simulation]\ndt = {:?}\ngravity = [{:?}, {:?}, {:?}]\n[solver.sleep]\nenabled = \
+             false\n[contact]\ndelta = {DELTA}\n{}{}",
             self.dt,
             gravity.x,
             gravity.y,

@@ -1,4 +1,5 @@
-//! Shared helpers of the integration tests: scenes known from theory, bodies of fuzz targets, degenerate scenes.
+//! Shared helpers of the integration tests: scenes known from theory, bodies of fuzz targets, degenerate
+//! scenes.
 //!
 //! - [`bowknot_safety`]: hard collision problems, and a check of every step that moves them;
 //! - [`degenerate`]: spikes, wedges, notches, sheets a micrometer apart;

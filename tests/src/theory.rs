@@ -130,7 +130,8 @@ pub fn dropped_cube(
     let folder = tempfile::tempdir().expect("a folder");
     let [x, y, z] = rotate;
     let text = format!(
-        "[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\nfriction = {friction:?}\n\
+        "[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind \
+         = \"solid\"\nfriction = {friction:?}\n\
          material = {{ base = \"jelly\", young_modulus = 1e5, density = 1000 }}\n\
          shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\n\
          rotate = [{x:?}, {y:?}, {z:?}]\ntranslate = [0, 0, 0.12]\n\
@@ -157,7 +158,8 @@ pub fn dropped_cube(
 pub fn thrown_cube(modulus: f64, mesh: bool, steps: usize, settings: &[String]) -> Vec<f64> {
     let folder = tempfile::tempdir().expect("a folder");
     let text = format!(
-        "[simulation]\ngravity = [0, 0, 0]\n[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\n\
+        "[simulation]\ngravity = [0, 0, 0]\n[solver.sleep]\nenabled = false\n[contact]\ndelta = \
+         1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\n\
          velocity = [0, 0, -3]\n\
          material = {{ base = \"jelly\", young_modulus = {modulus:?}, density = 1000 }}\n\
          shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\ntranslate = [0, 0, 0.1]\n\
@@ -201,7 +203,8 @@ pub fn rolling_ball(degrees: f64, edge: f64, dt: f64, range: Range<usize>, setti
     let folder = tempfile::tempdir().expect("a folder");
     let (sine, cosine) = degrees.to_radians().sin_cos();
     let text = format!(
-        "[simulation]\ndt = {dt:?}\ngravity = [{:?}, 0, {:?}]\n[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n\
+        "[simulation]\ndt = {dt:?}\ngravity = [{:?}, 0, {:?}]\n[solver.sleep]\nenabled = \
+         false\n[contact]\ndelta = 1e-3\n\
          [[body]]\nname = \"ball\"\nkind = \"solid\"\nfriction = 0.5\n\
          material = {{ base = \"rubber\", young_modulus = 1e6, density = 1000 }}\n\
          shape = {{ type = \"tet-ball\", radius = 0.05, edge = {edge:?} }}\n\
@@ -253,12 +256,15 @@ pub fn belt(degrees: f64, friction: f64, settings: &[String]) -> [f64; 2] {
     let drawn = (theta.cos(), -theta.sin());
     let reach = 0.02 * length;
     let text = format!(
-        "[simulation]\ngravity = [0, 0, 0]\nair_drag = 5\n[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n\
-         [[body]]\nname = \"belt\"\nmesh = \"belt.obj\"\nmaterial = {{ base = \"cotton\", poisson_ratio = 0.0 }}\nfriction = {friction:?}\n\
+        "[simulation]\ngravity = [0, 0, 0]\nair_drag = 5\n[solver.sleep]\nenabled = false\n[contact]\ndelta \
+         = 1e-3\n\
+         [[body]]\nname = \"belt\"\nmesh = \"belt.obj\"\nmaterial = {{ base = \"cotton\", poisson_ratio = \
+         0.0 }}\nfriction = {friction:?}\n\
          [[pin]]\nvertices = [{}]\n[[pin]]\nvertices = [{}]\n\
          motion = {{ keyframes = [{{ time = 1.0, translate = [{:?}, 0, {:?}] }}] }}\n\
          [[obstacle]]\nname = \"cylinder\"\nfriction = {friction:?}\nrotate = [90, 0, 0]\n\
-         shape = {{ type = \"lathe\", profile = [[0.02, -0.06], [{RADIUS}, -0.06], [{RADIUS}, 0.06], [0.02, 0.06]], edge = 0.0015 }}\n",
+         shape = {{ type = \"lathe\", profile = [[0.02, -0.06], [{RADIUS}, -0.06], [{RADIUS}, 0.06], [0.02, \
+         0.06]], edge = 0.0015 }}\n",
         range(0),
         range(rows),
         reach * drawn.0,
@@ -284,12 +290,12 @@ pub fn belt(degrees: f64, friction: f64, settings: &[String]) -> [f64; 2] {
     [pulled / held, (friction * theta).exp()]
 }
 
-/// A rope over a horizontal bar. One end hangs down `share` times as far as friction can just hold. Returns the speed at
-/// which the rope falls, the mean over time steps from `from` to `to` [m/s]. Its bending, EI / R^2, is
-/// about 1 % of the tension at the light end.
+/// A rope over a horizontal bar. One end hangs down `share` times as far as friction can just hold. Returns
+/// the speed at which the rope falls, the mean over time steps from `from` to `to` [m/s]. Its bending, EI /
+/// R^2, is about 1 % of the tension at the light end.
 ///
-/// With weight w per length, the tension T grows around a bar of radius R by at most dT/dphi = mu (T + w R cos phi) -
-/// w R sin phi, where phi is the angle from the top (Euler's belt with weight).
+/// With weight w per length, the tension T grows around a bar of radius R by at most dT/dphi = mu (T + w R
+/// cos phi) - w R sin phi, where phi is the angle from the top (Euler's belt with weight).
 pub fn rope(share: f64, friction: f64, (from, to): (usize, usize), settings: &[String]) -> f64 {
     const RADIUS: f64 = 0.03;
     const LIGHT: f64 = 0.12;
@@ -319,9 +325,11 @@ pub fn rope(share: f64, friction: f64, (from, to): (usize, usize), settings: &[S
     std::fs::write(folder.path().join("rope.obj"), text).expect("writes");
     let text = format!(
         "[simulation]\nair_drag = 1\n[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n\
-         [[body]]\nname = \"rope\"\nkind = \"strands\"\nmesh = \"rope.obj\"\nmaterial = {{ base = \"rope\", stretch_stiffness = 200, bend_stiffness = 1e-6 }}\nfriction = {friction:?}\n\
+         [[body]]\nname = \"rope\"\nkind = \"strands\"\nmesh = \"rope.obj\"\nmaterial = {{ base = \"rope\", \
+         stretch_stiffness = 200, bend_stiffness = 1e-6 }}\nfriction = {friction:?}\n\
          [[obstacle]]\nname = \"bar\"\nfriction = {friction:?}\nrotate = [90, 0, 0]\n\
-         shape = {{ type = \"lathe\", profile = [[0.01, -0.03], [{RADIUS}, -0.03], [{RADIUS}, 0.03], [0.01, 0.03]], edge = 0.0015 }}\n"
+         shape = {{ type = \"lathe\", profile = [[0.01, -0.03], [{RADIUS}, -0.03], [{RADIUS}, 0.03], [0.01, \
+         0.03]], edge = 0.0015 }}\n"
     );
     let mut simulator = simulator(&text, folder.path(), settings);
     let mut height = |steps: usize| {

@@ -1,9 +1,9 @@
-//! Whole simulations, collisions and dynamics, on the twins of the kernels: nothing intersects, the first contacts are those
-//! of the CPU, and so are the statistics of the runs.
+//! Whole simulations, collisions and dynamics, on the twins of the kernels: nothing intersects, the first
+//! contacts are those of the CPU, and so are the statistics of the runs.
 //!
-//! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the CPU with
-//! one sweep more per backward step, more accurate linear solves, and time steps solved to a tenth of the tolerance, which
-//! should make no difference either.
+//! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the
+//! CPU with one sweep more per backward step, more accurate linear solves, and time steps solved to a tenth
+//! of the tolerance, which should make no difference either.
 //!
 //! `--ignored` runs every scene of the paper and prints a table; without it there are some small ones.
 
@@ -74,7 +74,8 @@ enum On {
     CpuAccurate,
     /// With a tenth of the tolerance of time steps.
     CpuSolved,
-    /// With trust regions of one size: iterations come to contacts another way, which decides where these begin.
+    /// With trust regions of one size: iterations come to contacts another way, which decides where these
+    /// begin.
     CpuUniform,
     Twins,
 }
@@ -197,8 +198,8 @@ fn bodies_slide_and_stick_on_the_kernels_as_theory_has_it() {
 #[ignore = "it takes minutes"]
 fn nothing_intersects_in_any_scene_of_the_paper() {
     println!(
-        "| scene | vertices | time steps | two-way steps | iterations | contact rows | converged | largest stretch | most \
-         pairs | apart mm: centers | ends |"
+        "| scene | vertices | time steps | two-way steps | iterations | contact rows | converged | largest \
+         stretch | most pairs | apart mm: centers | ends |"
     );
     for case in ALL {
         let courses = [On::Cpu, On::CpuOnceMore, On::Twins].map(|on| course(case, on));
@@ -224,8 +225,8 @@ fn nothing_intersects_in_any_scene_of_the_paper() {
     }
 }
 
-/// The table of `docs/gpu/results.md` of how low sand lies after it has poured, which depends on how well its rows are solved: mean
-/// and standard deviation of runs with slightly different gravity.
+/// The table of `docs/gpu/results.md` of how low sand lies after it has poured, which depends on how well its
+/// rows are solved: mean and standard deviation of runs with slightly different gravity.
 #[test]
 #[ignore = "it takes minutes"]
 fn sand_by_number_of_sweeps() {

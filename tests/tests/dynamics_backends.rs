@@ -1,7 +1,8 @@
 //! Whole simulations with the dynamics on the twins of the kernels: they go as on the CPU.
 //!
-//! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the CPU with more
-//! accurate linear solves and with another preconditioner, which should make no difference either.
+//! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the
+//! CPU with more accurate linear solves and with another preconditioner, which should make no difference
+//! either.
 //!
 //! `--ignored` counts iterations in larger scenes and prints a table; see `docs/gpu/dynamics.md`.
 

@@ -1,5 +1,5 @@
-//! The end of a call on a device: its contacts are those that a search on the CPU finds, and a state that intersects is
-//! never accepted.
+//! The end of a call on a device: its contacts are those that a search on the CPU finds, and a state that
+//! intersects is never accepted.
 
 use bowknot::check::StateOptions;
 use bowknot::gpu::{Device, Engine, GpuError, GpuResolveError, TwinEngine, resolve_on};
@@ -120,7 +120,7 @@ fn described(contacts: &ContactSet) -> String {
     let ContactSet {
         pairs,
         separations,
-        desired,
+        deltas,
         min_separations,
         multipliers,
         frictions,
@@ -132,7 +132,7 @@ fn described(contacts: &ContactSet) -> String {
         .map(|s| bits(&[s.normal.as_slice(), &s.weights, &[s.distance, s.width]].concat()))
         .collect();
     let vectors: Vec<u64> = friction_multipliers.iter().flat_map(|f| bits(f.as_slice())).collect();
-    let numbers = [desired, min_separations, multipliers, frictions].map(|list| bits(list));
+    let numbers = [deltas, min_separations, multipliers, frictions].map(|list| bits(list));
     format!("{pairs:?} {separations:?} {numbers:?} {vectors:?}")
 }
 
@@ -223,8 +223,8 @@ fn compared(scene: &Scene, time_steps: usize, fault: Fault) -> Compared {
     *compared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Everything that collides, on a ground and around a ball: sheets of which two do not meet, with and without a thickness,
-/// strands, and grains on them. One sheet falls asleep before another falls on it.
+/// Everything that collides, on a ground and around a ball: sheets of which two do not meet, with and without
+/// a thickness, strands, and grains on them. One sheet falls asleep before another falls on it.
 const EVERYTHING: &str = r#"
 [simulation]
 dt = 0.01

@@ -1,4 +1,5 @@
-//! Free flight before the steps of a device: bodies that are apart move as a whole, and nothing passes through.
+//! Free flight before the steps of a device: bodies that are apart move as a whole, and nothing passes
+//! through.
 
 use bowknot::gpu::{TwinEngine, resolve_on};
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
@@ -7,8 +8,8 @@ use bowknot_tests::{Case, Random, StepChecker};
 use bowknot_twoway::{AcceptedState, Params, ResolveInput, Resolver};
 use std::ops::ControlFlow;
 
-/// Rectangles in any places and directions, a body each: corners in the order (0, 0), (1, 0), (0, 1), (1, 1). The first
-/// is an obstacle if asked for; below all of them is a half-space.
+/// Rectangles in any places and directions, a body each: corners in the order (0, 0), (1, 0), (0, 1), (1, 1).
+/// The first is an obstacle if asked for; below all of them is a half-space.
 fn rectangles(random: &mut Random, bodies: usize, obstacle: bool) -> Case {
     let mut positions = Vec::new();
     for body in 0..bodies {

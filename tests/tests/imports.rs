@@ -421,7 +421,8 @@ fn imports_that_form_no_circle_pass() {
     ];
     assert_eq!(cycles(&root), [""; 0]);
     // Neither comments, nor strings, nor tests count, nor other crates.
-    let b = "// use crate::a::A;\n/* crate::a::A */ const B: &str = \"crate::a\"; const C: char = '\"'; \
-             use a::b; #[cfg(test)] mod tests { use crate::a::A; fn f() {} } #[cfg(test)] use crate::a::A; fn g<'a>() {}";
+    let b = "// use crate::a::A;\n/* crate::a::A */ const B: &str = \"crate::a\"; const C: char = '\"'; use \
+             a::b; #[cfg(test)] mod tests { use crate::a::A; fn f() {} } #[cfg(test)] use crate::a::A; fn \
+             g<'a>() {}";
     assert_eq!(cycles(&[("", "mod a; mod b;"), ("a", "use crate::b::B;"), ("b", b)]), [""; 0]);
 }

@@ -18,7 +18,7 @@ pub fn seeds() -> u64 {
 }
 
 /// Checks every step of a loop of stages, from generated states to all kinds of targets.
-fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
+fn watched<S: Search, B: BackwardStep, F: ForwardStep<S>>(
     preset: Preset,
     floor: f64,
     stages: impl Fn(CollisionScene) -> Result<Resolver<S, B, F>, ResolveError> + Sync,
@@ -33,7 +33,9 @@ fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
 /// Presets and speeds in turn. With a minimum separation: where a tenth of the gap is left step by step, it
 /// falls to 1e-12 m within these few steps, too near for the judge to tell a miss from a hit. With few
 /// iterations: along a kilometer there would be many, and stopping early is as safe.
-fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> Result<F, Errors<ParamError>> + Sync) {
+fn with_impacts<F: ForwardStep<TrustRegionSearch>>(
+    forward: impl Fn(AdditiveCcd) -> Result<F, Errors<ParamError>> + Sync,
+) {
     for (preset, speed) in [(Preset::Fast, ClosingSpeed::Slab), (Preset::Paper, ClosingSpeed::Travel)] {
         let ccd = AdditiveCcd { speed, max_iterations: 50, ..AdditiveCcd::default() };
         watched(preset, 1e-8, |scene| {
@@ -74,7 +76,7 @@ fn no_step_to_each_vertexs_impact_intersects() {
 #[derive(Default)]
 struct Unlimited(Stepper);
 
-impl ForwardStep for Unlimited {
+impl<S: Search> ForwardStep<S> for Unlimited {
     fn begin(&mut self, scene: &CollisionScene, _: &ResolveState) {
         self.0.begin(scene.vertex_count());
     }
@@ -83,7 +85,7 @@ impl ForwardStep for Unlimited {
         &mut self,
         _: &CollisionScene,
         state: &mut ResolveState,
-        _: &mut dyn Search,
+        _: &mut S,
         _: &mut Statistics,
     ) -> StepReport {
         self.0.set_target(&state.x, &state.y);

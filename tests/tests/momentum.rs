@@ -46,8 +46,8 @@ fn a_cube_thrown_at_a_floor_comes_back_alike_from_a_mesh_and_a_half_space() {
     }
 }
 
-/// From 10 micrometres to 1 km, at up to 250 times its size in a time step: a ball keeps its shape, in one iteration of one
-/// two-way step; two where rounding is worth a tolerance.
+/// From 10 micrometres to 1 km, at up to 250 times its size in a time step: a ball keeps its shape, in one
+/// iteration of one two-way step; two where rounding is worth a tolerance.
 #[test]
 fn balls_of_any_size_fly_rigidly_at_any_speed() {
     let cases = [(5e-6, 0.0), (2.5e-4, 0.0), (1e-3, 50.0), (2.5e-3, 15.0), (0.05, 300.0), (500.0, 3000.0)];

@@ -17,8 +17,8 @@ fn device() -> DeviceEngine {
     DeviceEngine::open(&adapter).expect("it opens")
 }
 
-/// A sheet of nine by nine vertices above a pyramid, whose top is just beside one of four vertices in its middle. The rows
-/// of triangles with that vertex have a short lever on the others.
+/// A sheet of nine by nine vertices above a pyramid, whose top is just beside one of four vertices in its
+/// middle. The rows of triangles with that vertex have a short lever on the others.
 fn sheet_above_pyramid() -> (Case, [usize; 4]) {
     let n = 9;
     let at = |k: u32| EDGE * (f64::from(k) - 0.5 * f64::from(n - 1));
@@ -41,8 +41,9 @@ fn sheet_above_pyramid() -> (Case, [usize; 4]) {
     (Case { name: "pyramid".to_owned(), model, positions: x }, [30, 31, 39, 40])
 }
 
-/// Leads the pins to `depth` below the top of the pyramid [m], and the other vertices with them. What came of it, the
-/// largest distance of a vertex of the sheet from its target [m], and the largest ratio of an edge to its length at rest.
+/// Leads the pins to `depth` below the top of the pyramid [m], and the other vertices with them. What came of
+/// it, the largest distance of a vertex of the sheet from its target [m], and the largest ratio of an edge to
+/// its length at rest.
 fn led_to<E: Engine + Debug + Send>(engine: Option<E>, depth: f64) -> (Statistics, f64, f64) {
     let (case, pins) = sheet_above_pyramid();
     let (mut x, count) = (case.positions.clone(), case.positions.len());
@@ -86,7 +87,8 @@ fn cloth_stays_where_it_is_when_its_pins_are_led_into_an_obstacle() {
                 "{what}, {depth} m below: {} steps, {far:.4} m left, stretch {stretch:.4}",
                 report.steps
             );
-            // Nothing asks for more than to stay above the pyramid, by the contact distance of a tenth of an edge.
+            // Nothing asks for more than to stay above the pyramid, by the contact distance of a tenth of an
+            // edge.
             assert!(far < depth.max(0.0) + 0.25 * EDGE, "{what}, {depth}: {far}, {report:?}");
             assert!(report.steps <= 40, "{what}, {depth}: {} steps", report.steps);
             // The device may stop at the nearest point of its grid.

@@ -358,8 +358,8 @@ fn a_pile_of_grains_comes_to_rest() {
     assert!(sunk.abs() < 2e-3 * heights[199], "{sunk} of {} m in half a second", heights[199]);
 }
 
-/// A block that falls on a taut sheet gains no energy from it: what contacts and edges at their limits store they give back,
-/// and no more.
+/// A block that falls on a taut sheet gains no energy from it: what contacts and edges at their limits store
+/// they give back, and no more.
 #[test]
 fn a_block_on_a_taut_sheet_gains_no_energy() {
     let text = r#"

@@ -1,4 +1,5 @@
-//! How often a simulation on a device waits for it: steps that are submitted together have the same bits as one by one.
+//! How often a simulation on a device waits for it: steps that are submitted together have the same bits as
+//! one by one.
 
 use bowknot::gpu::{Device, Engine, GpuError, TwinEngine};
 use bowknot::{Scene, Simulator};
@@ -96,7 +97,8 @@ fn steps_that_are_submitted_together_have_the_same_bits_and_fewer_waits() {
 #[ignore = "it takes minutes"]
 fn submissions_and_readbacks_by_scene() {
     println!(
-        "| scene | calls | two-way steps | most | submissions per call | readbacks per call | dispatches per step |"
+        "| scene | calls | two-way steps | most | submissions per call | readbacks per call | dispatches per \
+         step |"
     );
     for (name, scale, time_steps) in
         [("drape", 0.5, 60), ("needle", 0.2, 40), ("stack", 0.2, 80), ("dress", 0.1, 40), ("sand", 0.08, 80)]

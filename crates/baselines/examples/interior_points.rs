@@ -10,7 +10,7 @@ use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVerte
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{
-    CertifiedForward, CollisionScene, ForwardStep, LcpBackward, Params, ResolveInput, Resolver,
+    CertifiedForward, CollisionScene, ContactData, ForwardStep, LcpBackward, Params, ResolveInput, Resolver,
     TrustRegionSearch,
 };
 use bowknot_baselines::{Composed, Method};
@@ -28,7 +28,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cells = std::env::args().nth(1).map_or(Ok(12), |text| text.parse())?;
     let Scene { x, target, model } = scene(cells)?;
     let masses = vec![1e-4; x.len()];
-    let collision_scene = |params: Params| CollisionScene::new(model.clone(), &x, &masses, params);
+    let collision_scene =
+        |params: Params| CollisionScene::new(model.clone(), &x, &masses, ContactData::default(), params);
     let slab = AdditiveCcd { speed: ClosingSpeed::Slab, ..AdditiveCcd::default() };
     let travel = AdditiveCcd::default();
     let barrier = BarrierParams::default();
@@ -81,7 +82,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn two_way<F: ForwardStep + 'static>(name: &str, scene: CollisionScene, forward: F) -> Box<dyn Method> {
+fn two_way<F: ForwardStep<TrustRegionSearch> + 'static>(
+    name: &str,
+    scene: CollisionScene,
+    forward: F,
+) -> Box<dyn Method> {
     let search = TrustRegionSearch::new(&scene);
     let backward: LcpBackward = LcpBackward::default();
     Box::new(Composed::new(name, Resolver::with_stages(scene, search, backward, forward)))

@@ -56,14 +56,14 @@ pub struct Composed<S, B, F> {
     resolver: Resolver<S, B, F>,
 }
 
-impl<S: Search, B: BackwardStep, F: ForwardStep> Composed<S, B, F> {
+impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Composed<S, B, F> {
     /// A method of that name.
     pub fn new(name: impl Into<String>, resolver: Resolver<S, B, F>) -> Self {
         Self { name: name.into(), resolver }
     }
 }
 
-impl<S: Search, B: BackwardStep, F: ForwardStep> Method for Composed<S, B, F> {
+impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Method for Composed<S, B, F> {
     fn name(&self) -> &str {
         &self.name
     }

@@ -24,7 +24,7 @@ pub struct CollisionCase {
 /// Lengths that define the problem; none: as recorded.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ProblemLengths {
-    /// Desired distance delta, as a multiple of the recorded problem's.
+    /// Contact distance delta, as a multiple of the recorded problem's.
     pub delta: Option<f64>,
     /// Minimum separation, as a multiple of the recorded problem's delta.
     pub min_separation: Option<f64>,

@@ -40,8 +40,8 @@ impl Docs {
         };
         ensure!(
             changes.is_empty(),
-            "results are written from a clean git tree only, so that its commits are those of the code; commit \
-             these files first, or measure with --quick:\n{changes}"
+            "results are written from a clean git tree only, so that its commits are those of the code; \
+             commit these files first, or measure with --quick:\n{changes}"
         );
         Ok(())
     }
@@ -62,7 +62,8 @@ impl Docs {
         self.ensure_clean()?;
         ensure!(
             !conditions.contains(WITH_CHANGES),
-            "{} is not written: measurements of {} come from a tree that was not clean ({conditions}); remove them",
+            "{} is not written: measurements of {} come from a tree that was not clean ({conditions}); \
+             remove them",
             figure.page(),
             figure.name()
         );

@@ -2,8 +2,8 @@
 //!
 //! Quick runs: processor time with one thread and an empty folder, recording of the problems included (Intel
 //! Xeon, 2 cores, 23 November 2026, while other programs shared the machine: an estimate, no measurement to
-//! compare with). Runs that the limit of one minute ended are given as a minute. Full runs have the limit that
-//! [`crate::bench`] sets; that of `record` is a guess.
+//! compare with). Runs that the limit of one minute ended are given as a minute. Full runs have the limit
+//! that [`crate::bench`] sets; that of `record` is a guess.
 
 /// Seconds of a quick run.
 const QUICK: &[(&str, u32)] = &[

@@ -14,8 +14,8 @@ pub trait Figure: Sync {
     fn title(&self) -> &'static str;
     /// The question that it answers, and how it is measured.
     fn question(&self) -> &'static str;
-    /// Whether its page shows its text and its tables. The index of docs/benchmarks.md lists the files of all other
-    /// figures.
+    /// Whether its page shows its text and its tables. The index of docs/benchmarks.md lists the files of all
+    /// other figures.
     fn on_page(&self) -> bool {
         false
     }

@@ -113,14 +113,14 @@ fn list() -> Result<()> {
     let scenes = record::contact_aware_scenes();
     let unaware = sets - scenes;
     let problems = format!(
-        "collision problems of {scenes} scenes in {sets} sets, as NPZ files: a set of each scene with contact-aware \
-         targets, and of {unaware} of them one with contact-unaware targets too"
+        "collision problems of {scenes} scenes in {sets} sets, as NPZ files: a set of each scene with \
+         contact-aware targets, and of {unaware} of them one with contact-unaware targets too"
     );
     text += &line("record", &problems);
     text += &format!(
         "\nquick, full: about the processor time of a first run with one thread; full is a limit, that of \
-         record a\nguess. Problems and measurements are kept, so that later runs take less. A figure stops measuring \
-         after {}\nminutes and says so; run again, it goes on.\n",
+         record a\nguess. Problems and measurements are kept, so that later runs take less. A figure stops \
+         measuring after {}\nminutes and says so; run again, it goes on.\n",
         bench::FULL_SECONDS / 60
     );
     match std::io::stdout().write_all(text.as_bytes()) {

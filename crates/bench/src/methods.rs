@@ -189,7 +189,7 @@ fn chebyshev(scene: CollisionScene) -> Built {
 }
 
 /// The two-way method with another forward step.
-fn forward<F: ForwardStep + 'static>(scene: CollisionScene, step: F) -> Built {
+fn forward<F: ForwardStep<TrustRegionSearch> + 'static>(scene: CollisionScene, step: F) -> Built {
     let search = TrustRegionSearch::new(&scene);
     let backward: LcpBackward = LcpBackward::default();
     composed(Resolver::with_stages(scene, search, backward, step))
@@ -215,7 +215,7 @@ fn composed<S, B, F>(resolver: Resolver<S, B, F>) -> Built
 where
     S: Search + 'static,
     B: BackwardStep + 'static,
-    F: ForwardStep + 'static,
+    F: ForwardStep<S> + 'static,
 {
     Ok(Box::new(Composed::new("", resolver)))
 }

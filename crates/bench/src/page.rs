@@ -9,8 +9,8 @@ const LINE: usize = 110;
 /// Name of the block with the index.
 const INDEX: &str = "index";
 
-/// The section of a figure: text, tables, charts, conditions. `charts` is where charts and files are, seen from the
-/// file with the section: empty if beside it, else a folder with a slash at its end.
+/// The section of a figure: text, tables, charts, conditions. `charts` is where charts and files are, seen
+/// from the file with the section: empty if beside it, else a folder with a slash at its end.
 pub fn section(figure: &dyn Figure, report: &Report, conditions: &str, charts: &str) -> String {
     let mut text = format!(
         "## {}\n\n{}\n\n{}\n",

@@ -86,7 +86,8 @@ struct Summary {
     peak_memory_bytes: u64,
 }
 
-/// The work of another process of this command, in the present thread pool: prints its [`ProcessRun`] as JSON.
+/// The work of another process of this command, in the present thread pool: prints its [`ProcessRun`] as
+/// JSON.
 pub fn print_run(scene: &str, scale: f64, frames: usize) -> Result<()> {
     let mut simulator = Simulator::new(&Scene::builtin(scene, scale)?)?;
     let mut steps = Vec::with_capacity(frames);

@@ -1,5 +1,5 @@
-//! Records collision problems of scenes: at most ten per scene and kind of targets, spread over the time steps in
-//! contact.
+//! Records collision problems of scenes: at most ten per scene and kind of targets, spread over the time
+//! steps in contact.
 
 use crate::bench::{Bench, Size};
 use crate::files::write;

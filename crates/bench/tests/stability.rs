@@ -1,5 +1,5 @@
-//! The ends of the sweeps of `bowknot-bench stability`: nothing intersects, all numbers are finite, and no case misses
-//! a goal without a known reason.
+//! The ends of the sweeps of `bowknot-bench stability`: nothing intersects, all numbers are finite, and no
+//! case misses a goal without a known reason.
 
 use std::process::Command;
 

@@ -81,8 +81,8 @@ pub(super) fn across_edges(kind: PairKind, x: &[Point; 4]) -> impl Iterator<Item
     })
 }
 
-/// The normal of a triangle, of any length. It is computed at the corner across from the longest edge: the two long
-/// edges of a sliver are nearly parallel.
+/// The normal of a triangle, of any length. It is computed at the corner across from the longest edge: the
+/// two long edges of a sliver are nearly parallel.
 fn triangle_normal([a, b, c]: [Point; 3]) -> Vector {
     let corners = [[a, b, c], [b, c, a], [c, a, b]];
     let across = |[_, q, r]: &[Point; 3]| (r - q).norm_squared();
@@ -91,9 +91,10 @@ fn triangle_normal([a, b, c]: [Point; 3]) -> Vector {
     perpendicular(q - p, r - p)
 }
 
-/// A vector along the cross product of two others, of any length; zero if they are parallel to rounding. If they are
-/// nearly parallel, the computed product is mostly rounding along them. That of one and of the rest of the other across
-/// it is perpendicular to both within rounding (Gram and Schmidt's method, once repeated).
+/// A vector along the cross product of two others, of any length; zero if they are parallel to rounding. If
+/// they are nearly parallel, the computed product is mostly rounding along them. That of one and of the rest
+/// of the other across it is perpendicular to both within rounding (Gram and Schmidt's method, once
+/// repeated).
 fn perpendicular(a: Vector, b: Vector) -> Vector {
     if a.norm_squared() < b.norm_squared() {
         return -perpendicular(b, a);

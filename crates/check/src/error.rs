@@ -20,7 +20,8 @@ pub enum CheckError {
         vertex_count: usize,
     },
     /// A coordinate is not a number, infinite, or too large for the arithmetic to be exact.
-    #[error("vertex {vertex} is at ({}, {}, {}); coordinates must be finite and below {limit:e}", position[0], position[1], position[2])]
+    #[error("vertex {vertex} is at ({}, {}, {}); coordinates must be finite and below \
+             {limit:e}", position[0], position[1], position[2])]
     BadCoordinate {
         /// The vertex.
         vertex: usize,

@@ -102,8 +102,8 @@ impl<const K: usize> Scene<K> {
         self.strands.arrange(instants);
     }
 
-    /// Fits all boxes to these positions, those of the `vertices` included or not; primitives that do not move
-    /// are flagged if `skip_unmoved`.
+    /// Fits all boxes to these positions, those of the `vertices` included or not; primitives that do not
+    /// move are flagged if `skip_unmoved`.
     pub fn fit(&mut self, instants: [&[Point]; K], vertices: bool, skip_unmoved: bool) {
         if vertices {
             self.vertices.fit(instants, skip_unmoved);

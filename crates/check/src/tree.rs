@@ -74,8 +74,8 @@ impl<const K: usize> MovingBox<K> {
     /// Whether the boxes may share a point at some time. Touching boxes do.
     #[inline(always)]
     pub fn meets(&self, other: &Self) -> bool {
-        // By coordinates, at some instant: whether self reaches up to other, and other up to self. Not: apart on that side
-        // all the way.
+        // By coordinates, at some instant: whether self reaches up to other, and other up to self. Not: apart
+        // on that side all the way.
         let (mut up, mut down) = (f32x4::ZERO, f32x4::ZERO);
         for k in 0..K {
             up |= f32x4::from(self.max[k]).simd_ge(f32x4::from(other.min[k]));
@@ -101,7 +101,8 @@ impl<const K: usize> MovingBox<K> {
     }
 }
 
-/// The boxes of a leaf, coordinate by coordinate: a box is compared with all of them at once, in the lanes of a register.
+/// The boxes of a leaf, coordinate by coordinate: a box is compared with all of them at once, in the lanes of
+/// a register.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LeafBoxes<const K: usize> {
     min: [[[f32; LEAF_SIZE]; 3]; K],

@@ -16,8 +16,8 @@ pub(super) trait Keep<const K: usize>: Sync {
     /// Whether two boxes may hold a pair of interest.
     fn keep(&self, a: &MovingBox<K>, b: &MovingBox<K>) -> bool;
 
-    /// Which boxes of a leaf [`Self::keep`] keeps with another box, a bit each; if [`Self::NARROWS`], it is asked again for
-    /// each of them.
+    /// Which boxes of a leaf [`Self::keep`] keeps with another box, a bit each; if [`Self::NARROWS`], it is
+    /// asked again for each of them.
     fn kept(&self, a: &MovingBox<K>, leaf: &LeafBoxes<K>) -> u32;
 }
 

@@ -81,7 +81,8 @@ pub struct RunOptions {
     /// the paths between them
     #[arg(long)]
     pub trace: bool,
-    /// Write the collision problem of each iteration to states/ in the folder of the run, for `bowknot resolve`
+    /// Write the collision problem of each iteration to states/ in the folder of the run, for `bowknot
+    /// resolve`
     #[arg(long)]
     pub record: bool,
     /// Check the path to every accepted state by a certificate, and the state at the end of each time step by
@@ -91,8 +92,9 @@ pub struct RunOptions {
     /// If the start intersects, write the triangles that do to this file (.ply or .obj)
     #[arg(long, value_name = "FILE")]
     pub dump: Option<PathBuf>,
-    /// If the run ends with an error, a panic, an intersection found by --check, or a target that was not reached,
-    /// write the smallest state that shows it to this file (.npz), for `bowknot resolve` and `bowknot check`
+    /// If the run ends with an error, a panic, an intersection found by --check, or a target that was not
+    /// reached, write the smallest state that shows it to this file (.npz), for `bowknot resolve` and
+    /// `bowknot check`
     #[arg(long, value_name = "FILE.npz")]
     pub dump_on_failure: Option<PathBuf>,
     /// Continue the run in the folder --out from its checkpoint
@@ -123,8 +125,8 @@ pub struct ResolveOptions {
     /// Check the path to every accepted state by a certificate: exit code 1 if anything intersects
     #[arg(long)]
     pub check: bool,
-    /// If the start intersects, or the call is refused, panics, does not converge, or is found to intersect by
-    /// --check, write the smallest part of the problem that shows it to this file (.npz)
+    /// If the start intersects, or the call is refused, panics, does not converge, or is found to intersect
+    /// by --check, write the smallest part of the problem that shows it to this file (.npz)
     #[arg(long, value_name = "FILE.npz")]
     pub dump_on_failure: Option<PathBuf>,
     /// Print JSON
@@ -259,8 +261,8 @@ pub struct RepairOptions {
     /// File for the repaired mesh (.obj, .ply; of tetrahedra .msh, .t)
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Weld border vertices, or any of tetrahedra, nearer than this [unit of the mesh file; default: a hundredth
-    /// of the mean length of border edges, a ten-thousandth of the mean edge of tetrahedra]
+    /// Weld border vertices, or any of tetrahedra, nearer than this [unit of the mesh file; default: a
+    /// hundredth of the mean length of border edges, a ten-thousandth of the mean edge of tetrahedra]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub weld_distance: Option<f64>,
     /// Drop all lines, such as leftovers and those along which other programs sew
@@ -351,7 +353,8 @@ pub struct Machine {
 /// How collisions are resolved.
 #[derive(Debug, Args)]
 pub struct Method {
-    /// Set of defaults for the tables [contact] and [solver] of a scene [default: that of the scene, else fast]
+    /// Set of defaults for the tables [contact] and [solver] of a scene [default: that of the scene, else
+    /// fast]
     #[arg(long, value_enum)]
     pub preset: Option<Preset>,
     /// Set one key of the scene, as in a scene file: contact.delta=0.001; may be repeated;
@@ -400,8 +403,8 @@ pub enum Backend {
     Cpu,
     /// A GPU (docs/GPU.md says what it does not have)
     Gpu,
-    /// The faster of both: `run` measures them in the first time steps with contacts, on copies of the scene, and says
-    /// which it took and why; with --resume: as before. `resolve` takes the CPU
+    /// The faster of both: `run` measures them in the first time steps with contacts, on copies of the scene,
+    /// and says which it took and why; with --resume: as before. `resolve` takes the CPU
     Auto,
 }
 

@@ -13,8 +13,8 @@ use std::path::Path;
 const BALL_RADIUS: f64 = 0.25;
 /// Gap between the ball and the lowest vertex at the start, relative to the same extent.
 const GAP: f64 = 0.05;
-/// The gap is at least so many mean edge lengths: twice the contact distance that a scene has by default. Nearer, a coarse mesh
-/// would be thrown off at the start.
+/// The gap is at least so many mean edge lengths: twice the contact distance that a scene has by default.
+/// Nearer, a coarse mesh would be thrown off at the start.
 const EDGE_GAP: f64 = 0.2;
 
 /// Whether the argument SCENE names a mesh file rather than a scene.
@@ -90,7 +90,8 @@ fn kind(mesh: &Mesh) -> BodyKind {
     }
 }
 
-/// Mean length of the edges of all elements [m]; 0 without any. Edges count once for each element that they belong to.
+/// Mean length of the edges of all elements [m]; 0 without any. Edges count once for each element that they
+/// belong to.
 fn mean_edge(mesh: &Mesh) -> f64 {
     let of_triangles = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let of_tets = mesh.tets.iter().flat_map(|&[a, b, c, d]| [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]);

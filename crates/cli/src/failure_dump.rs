@@ -16,8 +16,8 @@ pub fn refuse(file: &Path, inputs: &[&Path]) -> Result<(), Failure> {
     output::refuse_unwritable(file, "npz")
 }
 
-/// Looks for the smallest state within the default limits, until the user wants the command to end. Panics on the way
-/// are results, and not printed.
+/// Looks for the smallest state within the default limits, until the user wants the command to end. Panics on
+/// the way are results, and not printed.
 pub fn reduce<T>(interrupt: &Interrupt, search: impl FnOnce(Limits<'_>) -> T) -> T {
     eprintln!("looking for the smallest state that shows the failure");
     let hook = panic::take_hook();
@@ -27,8 +27,8 @@ pub fn reduce<T>(interrupt: &Interrupt, search: impl FnOnce(Limits<'_>) -> T) ->
     found
 }
 
-/// Writes the state, and says what it holds and how it shows the failure. `params` are those that the problem is
-/// resolved with; none if it is a state alone.
+/// Writes the state, and says what it holds and how it shows the failure. `params` are those that the problem
+/// is resolved with; none if it is a state alone.
 pub fn write(file: &Path, smallest: &SmallestState, params: Option<&Params>) -> Result<String, Failure> {
     let SmallestState { failure, reduction } = smallest;
     let Reduction { states, of, tries, minimal } = reduction;
@@ -37,7 +37,8 @@ pub fn write(file: &Path, smallest: &SmallestState, params: Option<&Params>) -> 
     let name = file.display();
     let Some(failure) = failure else {
         return Ok(format!(
-            "wrote the last collision problem whole to {name}, with {elements}: by itself it does not show the failure"
+            "wrote the last collision problem whole to {name}, with {elements}: by itself it does not show \
+             the failure"
         ));
     };
     let how = match minimal {

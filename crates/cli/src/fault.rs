@@ -1,4 +1,5 @@
-//! Faults of the program itself: how a command ends after a panic, and a panic on request, for the tests of that.
+//! Faults of the program itself: how a command ends after a panic, and a panic on request, for the tests of
+//! that.
 
 use crate::exit::{Exit, Failure};
 use std::panic::{self, AssertUnwindSafe};

@@ -27,8 +27,8 @@ pub fn list() -> Result<String, Failure> {
     Ok(adapters.iter().enumerate().map(line).collect())
 }
 
-/// What resolves a single collision problem. To open a device takes longer than most problems, so the CPU is taken unless
-/// a GPU is asked for.
+/// What resolves a single collision problem. To open a device takes longer than most problems, so the CPU is
+/// taken unless a GPU is asked for.
 pub fn of_problem(machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failure> {
     match machine.backend {
         Some(Backend::Gpu) => device::collisions(&Place::Number(machine.device)),
@@ -36,8 +36,8 @@ pub fn of_problem(machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failur
     }
 }
 
-/// What computes a run of the scene in that folder. A resumption goes on with what computed it before, unless the options
-/// say otherwise.
+/// What computes a run of the scene in that folder. A resumption goes on with what computed it before, unless
+/// the options say otherwise.
 pub fn of_run(options: &RunOptions, scene: &Scene, folder: &Path) -> Result<Backends, Failure> {
     let machine = &options.machine;
     let before = if options.resume { BackendRecord::read(folder).map_err(Failure::input)? } else { None };
@@ -113,7 +113,8 @@ enum Place {
 }
 
 impl Place {
-    /// The backend of that name, which computed the run of a folder before, or the device of that number in its place.
+    /// The backend of that name, which computed the run of a folder before, or the device of that number in
+    /// its place.
     fn of_name(name: &str, number: Option<usize>, folder: &Path) -> Result<Self, Failure> {
         match name.strip_prefix(GPU) {
             _ if name == "cpu" => Ok(Self::Cpu),
@@ -160,8 +161,8 @@ mod device {
         Ok(Box::new(ConjugateGradients::new(name, engine)))
     }
 
-    /// The faster one of the CPU and the device of that number in a scene, with or without its dynamics, and why it was
-    /// chosen.
+    /// The faster one of the CPU and the device of that number in a scene, with or without its dynamics, and
+    /// why it was chosen.
     pub fn choose(
         scene: &Scene,
         number: Option<usize>,
@@ -178,7 +179,8 @@ mod device {
         })
     }
 
-    /// The number of the device that computed a run: of that description, or of that name with another driver.
+    /// The number of the device that computed a run: of that description, or of that name with another
+    /// driver.
     pub fn number_of(description: &str, folder: &Path) -> Result<usize, Failure> {
         let all = Adapter::all();
         let same = all.iter().position(|adapter| adapter.to_string() == description);

@@ -11,7 +11,8 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Counts and size of a scene or a mesh. The extent of a mesh is in the unit of its file unless that is given.
+/// Counts and size of a scene or a mesh. The extent of a mesh is in the unit of its file unless that is
+/// given.
 #[derive(Debug, Serialize)]
 struct Info {
     vertices: usize,

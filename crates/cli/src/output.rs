@@ -28,7 +28,8 @@ pub fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Refuses a file for results with another ending, or in a folder that does not exist: before the work, not after.
+/// Refuses a file for results with another ending, or in a folder that does not exist: before the work, not
+/// after.
 pub fn refuse_unwritable(out: &Path, ending: &str) -> Result<(), Failure> {
     if out.extension().is_none_or(|found| !found.eq_ignore_ascii_case(ending)) {
         return Err(Failure::input(format!("{}: the name must end in .{ending}", out.display())));

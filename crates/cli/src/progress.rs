@@ -1,5 +1,5 @@
-//! Progress on stderr: on a terminal a bar with the time left, otherwise a plain line every few seconds, without
-//! any control code.
+//! Progress on stderr: on a terminal a bar with the time left, otherwise a plain line every few seconds,
+//! without any control code.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;

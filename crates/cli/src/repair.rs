@@ -100,7 +100,8 @@ fn to_text(report: &RepairReport, out: &Path, left_out: &[&str]) -> String {
         (report.dropped_strands, "dropped lines"),
         (
             report.lines,
-            "lines that stay (--drop-lines drops them; a solid may have none, nor may cloth that join its triangles)",
+            "lines that stay (--drop-lines drops them; a solid may have none, nor may cloth that join its \
+             triangles)",
         ),
         (report.unused_vertices, "dropped vertices that no element used"),
     ] {
@@ -128,27 +129,28 @@ fn to_text(report: &RepairReport, out: &Path, left_out: &[&str]) -> String {
     }
     if report.largest_move > report.weld_distance {
         lines.push(
-            "the weld distance joins vertices in chains, far beyond its own length: give a smaller --weld-distance"
+            "the weld distance joins vertices in chains, far beyond its own length: give a smaller \
+             --weld-distance"
                 .to_owned(),
         );
     } else if report.solid.is_some() {
         if report.after.intersections > 0 {
             lines.push(
-                "the surface of the solid intersects: mesh it anew there, or give a larger --weld-distance if vertices should \
-                 lie together"
+                "the surface of the solid intersects: mesh it anew there, or give a larger --weld-distance \
+                 if vertices should lie together"
                     .to_owned(),
             );
         }
     } else if report.after.parts > 1 && report.welded_vertices == 0 {
         lines.push(
-            "no borders lie together within the weld distance, and parts stay apart: if they are panels of one \
-             garment, give a larger --weld-distance"
+            "no borders lie together within the weld distance, and parts stay apart: if they are panels of \
+             one garment, give a larger --weld-distance"
                 .to_owned(),
         );
     } else if report.after.intersections > 0 {
         let remedy = "a larger --weld-distance closes wider seams; `bowknot check --dump FILE` writes the \
-                      triangles that intersect; a mesh for an obstacle needs no further repair, since obstacles \
-                      may intersect themselves";
+                      triangles that intersect; a mesh for an obstacle needs no further repair, since \
+                      obstacles may intersect themselves";
         lines.push(remedy.to_owned());
     }
     lines.join("\n")

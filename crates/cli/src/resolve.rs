@@ -269,8 +269,10 @@ fn to_text(summary: &Summary, options: &ResolveOptions) -> String {
     };
     format!(
         "{end} after {} and {} in {:.3} s ({:.3} s of CPU)\n\
-         distance to target {:.3e} m (RMS of free vertices), not travelled {:.3e} m, stationarity {:.3e} m\n{lag}\
-         smallest gap {gap}, largest stretch {:.4} of the lengths at the start, {:.4} at rest\n{checked}wrote {}",
+         distance to target {:.3e} m (RMS of free vertices), not travelled {:.3e} m, stationarity {:.3e} \
+         m\n{lag}\
+         smallest gap {gap}, largest stretch {:.4} of the lengths at the start, {:.4} at \
+         rest\n{checked}wrote {}",
         counted(summary.steps, "step", "steps"),
         counted(summary.searches, "search", "searches"),
         summary.seconds,

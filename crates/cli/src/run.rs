@@ -21,8 +21,8 @@ const MAX_SIZES: usize = 10;
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     setup::refuse_idle_device(&options.machine, options.dynamics_backend)?;
     setup::machine(&options.machine)?;
-    // From inside of the thread pool a parallel loop is a push on a local queue; from outside each would put this
-    // thread to sleep and wake it again.
+    // From inside of the thread pool a parallel loop is a push on a local queue; from outside each would put
+    // this thread to sleep and wake it again.
     rayon::scope(|_| simulate(options))
 }
 
@@ -95,7 +95,8 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
     })
 }
 
-/// Writes the smallest state that shows what a run failed of, and says what it wrote; none if it did not fail.
+/// Writes the smallest state that shows what a run failed of, and says what it wrote; none if it did not
+/// fail.
 fn dump_failure(
     scene: &Scene,
     watch: &FailureWatch,
@@ -311,8 +312,8 @@ fn held_apart(summary: &Summary) -> Option<String> {
     let HeldApartStep { step, at } = summary.most_held_apart.as_ref()?;
     let steps = counted(summary.frames, "time step", "time steps");
     Some(format!(
-        "warning: in {} of {steps} pins stretch edges beyond their limits, most in time step {step}: {at}; what helps: a larger \
-         stretch_limit of {}, or pins nearer together",
+        "warning: in {} of {steps} pins stretch edges beyond their limits, most in time step {step}: {at}; \
+         what helps: a larger stretch_limit of {}, or pins nearer together",
         summary.held_apart_steps, at.body
     ))
 }
@@ -361,7 +362,8 @@ fn unreached_targets(summary: &Summary) -> Vec<String> {
     for (name, lag) in summary.max.iter().flat_map(|max| &max.waiting) {
         let lag = lag.unwrap_or(f64::NAN);
         lines.push(format!(
-            "{name} was held up by what was in its way, or by the limit of steps: at most {lag:.3e} m behind its motion"
+            "{name} was held up by what was in its way, or by the limit of steps: at most {lag:.3e} m behind \
+             its motion"
         ));
     }
     for (name, wait) in &summary.waits_to_appear {

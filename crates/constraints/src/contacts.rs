@@ -10,9 +10,9 @@ use bowknot_lcp::{FrictionRow, LcpProblem, Row, Schedule};
 use bowknot_proximity::PairList;
 use rayon::prelude::*;
 
-/// The row of one pair with desired distance `desired` [m].
+/// The row of one pair with contact distance `delta` [m].
 ///
-/// Gap form: c = n . (sum_k s_k beta_k x_k) - desired, s_k = +1 on side a and -1 on side b, gradients
+/// Gap form: c = n . (sum_k s_k beta_k x_k) - delta, s_k = +1 on side a and -1 on side b, gradients
 /// s_k beta_k n. For half-spaces the plane is constant.
 pub fn contact_row(
     form: ContactForm,
@@ -20,26 +20,26 @@ pub fn contact_row(
     vertices: [u32; 4],
     positions: &[Point],
     separation: &Separation,
-    desired: f64,
+    delta: f64,
 ) -> Row {
     let points = vertices.map(|v| positions[v as usize]);
     let (value, gradients) = match form {
-        ContactForm::Volume => volume::row(kind, &points, separation, desired),
-        ContactForm::Face => face::row(kind, &points, separation, desired),
+        ContactForm::Volume => volume::row(kind, &points, separation, delta),
+        ContactForm::Face => face::row(kind, &points, separation, delta),
         ContactForm::Gap => None,
     }
     .unwrap_or_else(|| {
         let gradients = separation.signed_weights(kind).map(|beta| separation.normal * beta);
         // The forward step can use no more than the slab. Where the normal is not that of the closest points,
         // the slab is narrower than the computed distance.
-        (separation.distance.min(separation.width.max(0.0)) - desired, gradients)
+        (separation.distance.min(separation.width.max(0.0)) - delta, gradients)
     });
     let linear: f64 = gradients.iter().zip(&points).map(|(g, x)| g.dot(&x.coords)).sum();
     Row::new(vertices, gradients, value - linear)
 }
 
 /// Predicted gap [m] of a pair at `y` along its normal at the linearization point: the gap-form value
-/// without the desired distance.
+/// without the contact distance.
 #[inline]
 pub fn predicted_gap(
     kind: PairKind,
@@ -68,15 +68,15 @@ pub struct SelectedPair {
     /// Index of the pair in the pair list.
     pub pair: u32,
     /// The distance that its row asks for [m].
-    pub desired: f64,
+    pub delta: f64,
 }
 
 /// Contact rows in the order in which they are swept. They are refilled in every backward step and keep their
 /// buffers.
 ///
-/// Rows of one color share no movable vertex. The order is for convergence as much as for threads: in the order
-/// of the pair list, or of clusters of 128 of its rows, few sweeps leave a bias along the mesh, and three layers
-/// of cloth that stick to a slope creep 140 times as far.
+/// Rows of one color share no movable vertex. The order is for convergence as much as for threads: in the
+/// order of the pair list, or of clusters of 128 of its rows, few sweeps leave a bias along the mesh, and
+/// three layers of cloth that stick to a slope creep 140 times as far.
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows {
     /// Index of each row's pair in the pair list.
@@ -93,8 +93,8 @@ pub struct ContactRows {
 }
 
 impl ContactRows {
-    /// Fills in the rows of the `selected` pairs, which are in the order of the list. `movable[v]` tells which
-    /// vertices a row may move; only they count for colors. Rows are not prepared yet, see
+    /// Fills in the rows of the `selected` pairs, which are in the order of the list. `movable[v]` tells
+    /// which vertices a row may move; only they count for colors. Rows are not prepared yet, see
     /// [`bowknot_lcp::prepare_rows`].
     pub fn fill(
         &mut self,
@@ -113,7 +113,7 @@ impl ContactRows {
         let build = |(row, selected): (&mut Row, &SelectedPair)| {
             let p = selected.pair as usize;
             let (kind, vertices) = (pairs.kind(p), all[p].vertices);
-            *row = contact_row(form, kind, vertices, positions, &separations[p], selected.desired);
+            *row = contact_row(form, kind, vertices, positions, &separations[p], selected.delta);
         };
         if self.rows.len() < MIN_PARALLEL {
             self.rows.iter_mut().zip(&self.ordered).for_each(build);

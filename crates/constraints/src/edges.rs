@@ -83,7 +83,8 @@ impl EdgeLimits {
         });
     }
 
-    /// Lets edges be as long as the entries say [m] if that is more than they may be. Other entries change nothing.
+    /// Lets edges be as long as the entries say [m] if that is more than they may be. Other entries change
+    /// nothing.
     pub fn let_yield(&mut self, longer: &[DistanceLimit]) {
         for DistanceLimit { vertices: [a, b], limit } in longer {
             let edge =

@@ -16,7 +16,7 @@ pub(crate) fn row(
     kind: PairKind,
     points: &[Point; 4],
     separation: &Separation,
-    desired: f64,
+    delta: f64,
 ) -> Option<(f64, [Vector; 4])> {
     let [p0, p1, p2, p3] = points;
     let (u, v) = match kind {
@@ -33,5 +33,5 @@ pub(crate) fn row(
     let normal = normal * (normal.dot(&separation.normal).signum() / length);
     let gradients = separation.signed_weights(kind).map(|beta| normal * beta);
     let height: f64 = gradients.iter().zip(points).map(|(g, x)| g.dot(&(x - p0))).sum();
-    Some((height - desired, gradients))
+    Some((height - delta, gradients))
 }

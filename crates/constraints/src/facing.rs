@@ -16,24 +16,26 @@ const ON_BOUNDARY: f64 = 1e-9;
 /// Largest sine of the angle between the faces of an edge that count as one flat surface.
 const FLAT: f64 = 2e-3;
 
-/// Sine of the angle between normal and cone up to which a pair is a contact in full, and from which on it is none.
+/// Sine of the angle between normal and cone up to which a pair is a contact in full, and from which on it is
+/// none.
 const NARROWEST: f64 = 0.01;
 const WIDEST: f64 = 0.1;
 
-/// Sines of the angle between the faces of an edge from which on it begins to count as bent, and does in full. Larger: what
-/// slides on slightly bent surfaces is lifted and let down, and loses speed.
+/// Sines of the angle between the faces of an edge from which on it begins to count as bent, and does in
+/// full. Larger: what slides on slightly bent surfaces is lifted and let down, and loses speed.
 const NEARLY_FLAT: f64 = 5e-4;
 const BENT: f64 = 0.01;
 
 /// Largest number of passes over the neighbors of a pair's features that turn its normal into their cones.
 const MAX_TURNS: usize = 4;
 
-/// Sine of the angle between the directions to two neighbors from which on they span a plane, and the largest one between a
-/// plane and the directions in it: above rounding.
+/// Sine of the angle between the directions to two neighbors from which on they span a plane, and the largest
+/// one between a plane and the directions in it: above rounding.
 const MIN_CROSSING: f64 = 0.1;
 const PLANE: f64 = 1e-9;
 
-/// Cosine of the angle between normal and plane up to which the plane counts. Farther off a pair is no contact.
+/// Cosine of the angle between normal and plane up to which the plane counts. Farther off a pair is no
+/// contact.
 const NEAR_PLANE: f64 = 0.98;
 
 /// Smallest length of a turned normal that has a direction.
@@ -128,10 +130,10 @@ impl Facing {
     }
 
     /// Whether a pair is a contact: its normal lies in the normal cones of both `features` at `positions`, or
-    /// leaves them by an angle with a sine of at most `tolerance`, which is at least 0. The tolerance is needed because cones
-    /// above flat surfaces are single directions. The cones of strands have all directions. Two edges within
-    /// flat surfaces are no contact: vertices and faces represent it completely. A vertex above the interior
-    /// of a face always is a contact.
+    /// leaves them by an angle with a sine of at most `tolerance`, which is at least 0. The tolerance is
+    /// needed because cones above flat surfaces are single directions. The cones of strands have all
+    /// directions. Two edges within flat surfaces are no contact: vertices and faces represent it completely.
+    /// A vertex above the interior of a face always is a contact.
     pub fn is_contact(
         &self,
         topology: &Topology,
@@ -154,9 +156,10 @@ impl Facing {
         }
     }
 
-    /// How much of a contact a pair is [1]: 1 if its normal lies in the normal cones of both `features`, less the farther it
-    /// leaves them, 0 from an angle with a sine of a tenth on. Continuous in positions and normal, where [`Self::is_contact`] jumps. Two
-    /// edges within flat surfaces are no contact, those of bent ones the more the more they are bent.
+    /// How much of a contact a pair is [1]: 1 if its normal lies in the normal cones of both `features`, less
+    /// the farther it leaves them, 0 from an angle with a sine of a tenth on. Continuous in positions and
+    /// normal, where [`Self::is_contact`] jumps. Two edges within flat surfaces are no contact, those of bent
+    /// ones the more the more they are bent.
     pub fn contact_share(
         &self,
         topology: &Topology,
@@ -188,9 +191,10 @@ impl Facing {
         if matches!(features, [Feature::Edge(_), Feature::Edge(_)]) { share * bend } else { share }
     }
 
-    /// The direction in the normal cones of both `features` at `positions` that is closest to `normal`, approximately. A
-    /// contact is pushed along it if its normal has left the cones a little. If the surface of a `rigid` side is flat there,
-    /// its normal counts alone: a plane without friction pushes to no side, whatever lies on it. Unit vectors.
+    /// The direction in the normal cones of both `features` at `positions` that is closest to `normal`,
+    /// approximately. A contact is pushed along it if its normal has left the cones a little. If the surface
+    /// of a `rigid` side is flat there, its normal counts alone: a plane without friction pushes to no side,
+    /// whatever lies on it. Unit vectors.
     pub fn turned(
         &self,
         topology: &Topology,
@@ -251,8 +255,8 @@ impl Facing {
         normal.filter(|_| is_plane)
     }
 
-    /// Whether all directions in which the surface continues from a feature pass a test; they have any length. It ends
-    /// with the first that does not.
+    /// Whether all directions in which the surface continues from a feature pass a test; they have any
+    /// length. It ends with the first that does not.
     #[inline]
     fn all_neighbors(
         &self,

@@ -8,7 +8,7 @@
 
 mod coloring;
 mod contacts;
-mod desired;
+mod delta;
 mod edges;
 mod face;
 mod facing;
@@ -26,7 +26,7 @@ pub use bowknot_proximity as proximity;
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use coloring::Coloring;
 pub use contacts::{ContactRows, SelectedPair, contact_row, predicted_gap};
-pub use desired::DesiredDistance;
+pub use delta::DeltaRule;
 pub use edges::{EdgeLimits, Stretch};
 pub use facing::{Facing, Feature};
 pub use friction::tangents;

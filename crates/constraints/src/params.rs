@@ -11,7 +11,7 @@ pub const STRETCH_LIMIT: f64 = 1.1;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactParams {
-    /// Desired distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster,
+    /// Contact distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster,
     /// rounder contacts with a visible gap; smaller: tighter contacts, more steps.
     pub delta: Option<f64>,
     /// Minimum separation [m], xi: no step makes a smaller gap. Default a tenth of `delta`; 0 switches it
@@ -38,9 +38,9 @@ pub struct ContactParams {
     pub friction_model: FrictionModel,
     /// Whether edge lengths are limited at all. Default true.
     pub edges: bool,
-    /// Largest ratio of an edge's length to its reference length, sigma, for every body without its own; above 1,
-    /// inf: no limit. Default: the limit of the body's material if it is a cloth,
-    /// none for solids, otherwise 1.1 (paper: 1.1 for all).
+    /// Largest ratio of an edge's length to its reference length, sigma, for every body without its own;
+    /// above 1, inf: no limit. Default: the limit of the body's material if it is a cloth, none for solids,
+    /// otherwise 1.1 (paper: 1.1 for all).
     pub stretch_limit: Option<f64>,
     /// The reference length of an edge. Default rest.
     pub edge_reference: EdgeReference,

@@ -1,7 +1,7 @@
 //! The volume form of contact constraints (paper, Eq. 14-16).
 //!
 //! The paper asks for V(x) >= V(r), with r the positions after pushing the pair apart along the normal n to
-//! the desired distance. V(r)/V(x) = delta/d holds exactly, because the closest points lie on the primitives.
+//! the contact distance. V(r)/V(x) = delta/d holds exactly, because the closest points lie on the primitives.
 //! Dividing by the area |N| of the base at the linearization point gives a length, so that multipliers keep
 //! their meaning from one linearization to the next:
 //!
@@ -27,7 +27,7 @@ pub(crate) fn row(
     kind: PairKind,
     points: &[Point; 4],
     separation: &Separation,
-    desired: f64,
+    delta: f64,
 ) -> Option<(f64, [Vector; 4])> {
     let d = separation.distance;
     if d <= 0.0 {
@@ -70,5 +70,5 @@ pub(crate) fn row(
     }
     let scale = volume.signum() / base;
     gradients.iter_mut().for_each(|g| *g *= scale);
-    Some((volume.abs() / base * (1.0 - desired / d), gradients))
+    Some((volume.abs() / base * (1.0 - delta / d), gradients))
 }

@@ -1,6 +1,6 @@
 //! Values and gradients of contact and edge rows against finite differences and closed forms.
 
-use bowknot_constraints::{ContactForm, DesiredDistance, EdgeLimits, EdgeReference, contact_row};
+use bowknot_constraints::{ContactForm, DeltaRule, EdgeLimits, EdgeReference, contact_row};
 use bowknot_geometry::{PairKind, Point, Topology, Vector, distance, separation};
 use bowknot_lcp::{DistanceLimit, Row};
 use bowknot_proximity::{CollisionModel, Pair};
@@ -23,8 +23,8 @@ impl Random {
     }
 }
 
-fn row_at(form: ContactForm, kind: PairKind, x: &[Point; 4], desired: f64) -> Row {
-    contact_row(form, kind, [0, 1, 2, 3], x, &separation::separate(kind, x), desired)
+fn row_at(form: ContactForm, kind: PairKind, x: &[Point; 4], delta: f64) -> Row {
+    contact_row(form, kind, [0, 1, 2, 3], x, &separation::separate(kind, x), delta)
 }
 
 fn value(row: &Row, x: &[Point; 4]) -> f64 {
@@ -72,16 +72,16 @@ fn both_forms_have_the_value_and_gradient_of_what_they_linearize() {
         for _ in 0..200 {
             let x = interior_pair(kind, &mut random);
             let d = distance::closest(kind, &x).distance;
-            let desired = 0.1 + 0.05 * random.next();
+            let delta = 0.1 + 0.05 * random.next();
             let base = base(kind, &x);
             for form in [ContactForm::Gap, ContactForm::Volume] {
-                let row = row_at(form, kind, &x, desired);
+                let row = row_at(form, kind, &x, delta);
                 let quantity = |x: &[Point; 4]| match form {
                     ContactForm::Gap => distance::closest(kind, x).distance,
                     _ => height(kind, x, base),
                 };
                 // Gap form: c = d - delta; volume c = height (1 - delta/d), equal for interior points.
-                let expected = quantity(&x) * (1.0 - desired / d);
+                let expected = quantity(&x) * (1.0 - delta / d);
                 assert!(
                     (value(&row, &x) - expected).abs() < 1e-9,
                     "{kind:?} {form:?}: {} {expected}",
@@ -223,19 +223,19 @@ fn limits_widen_where_they_are_known_and_until_the_next_call() {
 }
 
 #[test]
-fn the_desired_distance_is_lower_in_fine_meshes_and_for_pairs_that_start_close() {
+fn the_contact_distance_is_lower_in_fine_meshes_and_for_pairs_that_start_close() {
     // Vertex 0 above a triangle, in the same component.
     let topology = Topology::builder(5).triangles([[1, 2, 3], [0, 4, 1]]).build().unwrap();
     let model = CollisionModel::single_body(topology);
     let pair = Pair { elements: [0, 0], vertices: [0, 1, 2, 3] };
     let rest = [[0.2, 0.2, 0.004], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]
         .map(Point::from);
-    let free = DesiredDistance { delta: 0.01, growth: f64::INFINITY };
-    let (desired, lowered) = free.of(&model, PairKind::VertexTriangle, &pair, &rest, 0.004);
-    assert!(lowered && (desired - 0.002).abs() < 1e-15, "half of the rest distance: {desired}");
-    let slow = DesiredDistance { delta: 0.001, growth: 2e-4 };
-    let (desired, lowered) = slow.of(&model, PairKind::VertexTriangle, &pair, &rest, 1e-5);
-    assert!(!lowered && (desired - 2.1e-4).abs() < 1e-15, "present gap plus growth: {desired}");
+    let free = DeltaRule { delta: 0.01, growth: f64::INFINITY };
+    let (delta, lowered) = free.of(&model, PairKind::VertexTriangle, &pair, &rest, 0.004);
+    assert!(lowered && (delta - 0.002).abs() < 1e-15, "half of the rest distance: {delta}");
+    let slow = DeltaRule { delta: 0.001, growth: 2e-4 };
+    let (delta, lowered) = slow.of(&model, PairKind::VertexTriangle, &pair, &rest, 1e-5);
+    assert!(!lowered && (delta - 2.1e-4).abs() < 1e-15, "present gap plus growth: {delta}");
     // Two parts of one body are no neighbors.
     let parts = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
     let parts = CollisionModel::single_body(parts);

@@ -78,7 +78,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             exact_info.step_length
         );
         println!(
-            "tolerance  preconditioner  iterations 1st  2nd   seconds 1st   error max [mm]   rms [mm]   stretch"
+            "tolerance  preconditioner  iterations 1st  2nd   seconds 1st   error max [mm]   rms [mm]   \
+             stretch"
         );
         for &preconditioner in &preconditioners {
             for exponent in [1, 2, 3, 4, 5, 6, 7, 8] {
@@ -93,7 +94,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                     squares += error * error;
                 }
                 println!(
-                    "{cg_tolerance:9.0e}  {:14}  {:14} {:4}   {seconds:11.3}   {largest:14.4}   {:8.4}   {:7.4}",
+                    "{cg_tolerance:9.0e}  {:14}  {:14} {:4}   {seconds:11.3}   {largest:14.4}   {:8.4}   \
+                     {:7.4}",
                     format!("{preconditioner:?}"),
                     first.cg.iterations,
                     second.cg.iterations,

@@ -1,4 +1,5 @@
-//! Error against CPU seconds of linear and quadratic tetrahedra, for three blocks of soft rubber in equilibrium.
+//! Error against CPU seconds of linear and quadratic tetrahedra, for three blocks of soft rubber in
+//! equilibrium.
 //!
 //! ```text
 //! RAYON_NUM_THREADS=1 cargo run --release -p bowknot-dynamics --example solid_elements
@@ -10,8 +11,8 @@
 //! | a bar of 20 x 2 x 2 cm, nu 0.45, one end turned by 90 degrees | its elastic energy |
 //! | a cube of 10 cm, nu 0.49, between plates that it sticks to, 20 % lower | its elastic energy |
 //!
-//! The error is relative to quadratic tetrahedra on a mesh that is finer than all others. Diagonals of cells are parallel, or
-//! those of neighbors are mirror images.
+//! The error is relative to quadratic tetrahedra on a mesh that is finer than all others. Diagonals of cells
+//! are parallel, or those of neighbors are mirror images.
 
 #![expect(clippy::print_stdout, reason = "an example reports what it measured")]
 

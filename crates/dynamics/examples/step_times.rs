@@ -24,7 +24,8 @@ use std::time::Instant;
 fn main() -> Result<(), Box<dyn Error>> {
     let steps = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(5);
     println!(
-        "body, vertices, elements, seconds to build, seconds per step, CPU seconds per step, CG iterations of both targets"
+        "body, vertices, elements, seconds to build, seconds per step, CPU seconds per step, CG iterations \
+         of both targets"
     );
     for model in [SolidModel::Stvk, SolidModel::StableNeoHookean] {
         // A slab of 1 m x 1 m x 2 cm that is held at one side and bent by its initial velocity.

@@ -35,11 +35,11 @@ pub enum BodyShape {
         /// Its material.
         material: SolidMaterial,
     },
-    /// A solid of tets with nodes in the middles of their edges, which bend and shear as they should where those of
-    /// [`Self::Solid`] are too stiff.
+    /// A solid of tets with nodes in the middles of their edges, which bend and shear as they should where
+    /// those of [`Self::Solid`] are too stiff.
     QuadraticSolid {
-        /// Its tets: the corners as in [`Self::Solid`], then the middles of the edges 01, 02, 03, 12, 13, 23, which must lie
-        /// in the middles of straight edges at rest.
+        /// Its tets: the corners as in [`Self::Solid`], then the middles of the edges 01, 02, 03, 12, 13, 23,
+        /// which must lie in the middles of straight edges at rest.
         tets: Vec<[u32; 10]>,
         /// Its material.
         material: SolidMaterial,

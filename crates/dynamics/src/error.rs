@@ -57,7 +57,8 @@ pub enum ModelError {
     },
     /// A strand edge has no length at rest: its points coincide.
     #[error(
-        "body \"{body}\": edge {index} has no length at rest, vertices {a} and {b} are at one place: merge them"
+        "body \"{body}\": edge {index} has no length at rest, vertices {a} and {b} are at one place: merge \
+         them"
     )]
     ZeroLength {
         /// Name of the body.
@@ -87,8 +88,8 @@ pub enum ModelError {
     },
     /// A middle of an edge of a quadratic tet lies elsewhere.
     #[error(
-        "body \"{body}\": vertex {vertex} of quadratic tet {index} lies {off:e} m from the middle of its edge: edges must be straight \
-         at rest and divided in half"
+        "body \"{body}\": vertex {vertex} of quadratic tet {index} lies {off:e} m from the middle of its \
+         edge: edges must be straight at rest and divided in half"
     )]
     OffMiddle {
         /// Name of the body.
@@ -102,7 +103,8 @@ pub enum ModelError {
     },
     /// The warp direction is normal to triangles, so that it has no projection into them.
     #[error(
-        "body \"{body}\": warp_direction is normal to {} of its triangles{}: choose a direction along the cloth",
+        "body \"{body}\": warp_direction is normal to {} of its triangles{}: choose a direction along the \
+         cloth",
         triangles.len(), first_ten(triangles)
     )]
     WarpDirection {

@@ -3,8 +3,8 @@
 use bowknot_geometry::{UnionFind, Vector};
 use nalgebra::{Matrix3, SymmetricEigen};
 
-/// Resistance up to which a direction is free, as a share of the largest one: normals that differ by rounding alone span
-/// one direction.
+/// Resistance up to which a direction is free, as a share of the largest one: normals that differ by rounding
+/// alone span one direction.
 const FREE: f64 = 1e-14;
 
 /// Disjoint sets of 0..n, and what holds their members. The smallest member represents its set.

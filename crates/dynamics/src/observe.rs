@@ -157,8 +157,8 @@ impl DynamicsModel {
         self.solids().map(|(_, tets)| of_solid(&tets)).sum()
     }
 
-    /// Tets without positive volume at positions `x` [m]: body and index of each tet, ascending. Quadratic ones count as eight,
-    /// see [`divide_tetrahedron`].
+    /// Tets without positive volume at positions `x` [m]: body and index of each tet, ascending. Quadratic
+    /// ones count as eight, see [`divide_tetrahedron`].
     pub fn inverted_tets(&self, x: &[Point]) -> Vec<[usize; 2]> {
         let mut inverted = Vec::new();
         for (body, tets) in self.solids() {
@@ -196,9 +196,10 @@ impl Dynamics {
         }
     }
 
-    /// Change of the sum of the [energies](Self::energies) [J] where a time step of `dt` [s] from `start` ends at `x` in
-    /// place of `from` [m], velocities being those of the way from its start. Vertices that differ by at most `resolution`
-    /// along each axis [m] count as if they did not: the time that this takes goes with the number of the others.
+    /// Change of the sum of the [energies](Self::energies) [J] where a time step of `dt` [s] from `start`
+    /// ends at `x` in place of `from` [m], velocities being those of the way from its start. Vertices that
+    /// differ by at most `resolution` along each axis [m] count as if they did not: the time that this takes
+    /// goes with the number of the others.
     pub fn energy_change(
         &self,
         start: &[Point],

@@ -43,8 +43,8 @@ pub trait Parameters {
     }
 }
 
-/// Collects the errors of a struct of parameters. Its methods refuse NaN. Texts are written for errors alone, so
-/// that checks that succeed allocate nothing.
+/// Collects the errors of a struct of parameters. Its methods refuse NaN. Texts are written for errors alone,
+/// so that checks that succeed allocate nothing.
 #[derive(Debug, Default)]
 pub struct Checks {
     /// Path of the struct that is being checked, with a dot at its end unless it is empty.

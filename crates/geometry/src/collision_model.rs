@@ -121,8 +121,8 @@ impl CollisionModel {
         Self { topology, vertex_body, vertex_component, bodies, half_spaces: Vec::new() }
     }
 
-    /// Changes the filters of the bodies and the half-spaces, one entry per body and per half-space. Nothing else
-    /// changes.
+    /// Changes the filters of the bodies and the half-spaces, one entry per body and per half-space. Nothing
+    /// else changes.
     ///
     /// # Panics
     /// If there is another number of entries than of bodies or half-spaces.

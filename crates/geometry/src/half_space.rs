@@ -3,8 +3,8 @@
 use crate::point::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
-/// The solid below a plane: points with `normal . x < offset` are inside. With an offset of minus infinity it is empty,
-/// and meets nothing.
+/// The solid below a plane: points with `normal . x < offset` are inside. With an offset of minus infinity it
+/// is empty, and meets nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HalfSpace {
     /// Outward unit normal.

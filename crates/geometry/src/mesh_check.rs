@@ -24,7 +24,8 @@ pub enum MeshProblem {
     VertexOutOfRange(#[from] VertexOutOfRange),
     /// A triangle has zero area, exactly or within rounding, because of collinear, coincident or repeated
     /// vertices.
-    #[error("triangle {triangle} (vertices {}, {}, {}) has zero area, at {}", vertices[0], vertices[1], vertices[2], place(center))]
+    #[error("triangle {triangle} (vertices {}, {}, {}) has zero area, at \
+             {}", vertices[0], vertices[1], vertices[2], place(center))]
     ZeroArea {
         /// Which triangle.
         triangle: u32,
@@ -34,7 +35,8 @@ pub enum MeshProblem {
         center: Point,
     },
     /// A triangle has the same three vertices as an earlier one, in any order.
-    #[error("triangle {triangle} repeats triangle {first} (vertices {}, {}, {}), at {}", vertices[0], vertices[1], vertices[2], place(center))]
+    #[error("triangle {triangle} repeats triangle {first} (vertices {}, {}, {}), at \
+             {}", vertices[0], vertices[1], vertices[2], place(center))]
     RepeatedTriangle {
         /// The later triangle.
         triangle: u32,

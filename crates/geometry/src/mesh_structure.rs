@@ -85,7 +85,8 @@ impl MeshStructure {
 }
 
 impl MeshStructure {
-    /// Whether the triangles bound a volume: there are some, each edge has two of them, and no border is open.
+    /// Whether the triangles bound a volume: there are some, each edge has two of them, and no border is
+    /// open.
     pub fn is_closed(&self) -> bool {
         !self.parts.is_empty() && self.borders.is_empty() && self.branching_edges.is_empty()
     }

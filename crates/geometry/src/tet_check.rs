@@ -2,8 +2,8 @@
 
 use crate::point::{Point, Vector};
 
-/// Six times the volume over the cube of the longest edge below which a tetrahedron is flat. Far above the rounding of the
-/// volume, so that the sign of a larger one is certain.
+/// Six times the volume over the cube of the longest edge below which a tetrahedron is flat. Far above the
+/// rounding of the volume, so that the sign of a larger one is certain.
 const FLAT: f64 = 1e-12;
 
 /// What keeps a tetrahedral mesh from being a solid.
@@ -26,8 +26,8 @@ pub struct SharedSide {
     pub face: [u32; 3],
 }
 
-/// Finds flat, turned and overlapping tetrahedra. Flat ones, and those that name a vertex twice, overlap nothing. Of several
-/// on one side of a face each makes a pair with the next. O(n log n).
+/// Finds flat, turned and overlapping tetrahedra. Flat ones, and those that name a vertex twice, overlap
+/// nothing. Of several on one side of a face each makes a pair with the next. O(n log n).
 ///
 /// Vertices must exist.
 pub fn check_tets(positions: &[Point], tets: &[[u32; 4]]) -> TetFaults {

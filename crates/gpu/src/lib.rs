@@ -13,6 +13,7 @@
 //! | `linear`, `assembly` | linear solves of the dynamics, and their matrices |
 //! | `newton` | Newton's method of the dynamics with its vectors on a device |
 //! | `potential` | the potential of the bodies and its gradient |
+#![allow(clippy::too_many_arguments, reason = "a kernel has as many arguments as bindings")]
 
 mod adapter;
 mod adjacency;

@@ -22,7 +22,8 @@ pub struct Mesh {
     pub obstacle: Option<Vec<bool>>,
     /// Body of each vertex, if the file says so.
     pub body: Option<Vec<u32>>,
-    /// Names of the bodies, in the order of their numbers, if the file says so; there may be fewer than bodies.
+    /// Names of the bodies, in the order of their numbers, if the file says so; there may be fewer than
+    /// bodies.
     pub names: Vec<String>,
     /// The polygons whose fans are the triangles, and what modeling tools say about them; none if the file
     /// has nameless triangles only, or is neither OBJ nor PLY.
@@ -84,8 +85,9 @@ impl Mesh {
         Self { triangles, tets: Vec::new(), surface: None, ..self }
     }
 
-    /// Whether each vertex belongs to an obstacle that is not there in a frame with these `positions` [m]: all vertices of
-    /// such a connected part are at one place. Empty if there is none, or the mesh does not say what is an obstacle.
+    /// Whether each vertex belongs to an obstacle that is not there in a frame with these `positions` [m]:
+    /// all vertices of such a connected part are at one place. Empty if there is none, or the mesh does not
+    /// say what is an obstacle.
     pub fn absent(&self, positions: &[Point]) -> Vec<bool> {
         let Some(obstacle) = self.obstacle.as_ref() else { return Vec::new() };
         let sides = self.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [i, k]]);
@@ -104,8 +106,8 @@ impl Mesh {
         (0..positions.len() as u32).map(|v| absent[parts.root(v) as usize]).collect()
     }
 
-    /// Leaves out the elements with a vertex that is marked, one entry per vertex or none at all. Vertices keep their
-    /// numbers.
+    /// Leaves out the elements with a vertex that is marked, one entry per vertex or none at all. Vertices
+    /// keep their numbers.
     pub fn leave_out(&mut self, marked: &[bool]) {
         let stays = |v: &u32| marked.get(*v as usize) != Some(&true);
         self.triangles.retain(|t| t.iter().all(stays));

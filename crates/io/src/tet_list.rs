@@ -35,7 +35,8 @@ pub(crate) fn read_tet_list(path: &Path, import: &Import) -> Result<Mesh, IoErro
     Ok(mesh)
 }
 
-/// Writes vertices, tetrahedra and triangles as a list, atomically; coordinates round-trip exactly. Vertices are numbered from
+/// Writes vertices, tetrahedra and triangles as a list, atomically; coordinates round-trip exactly. Vertices
+/// are numbered from
 /// 0. Lines and points are not written.
 ///
 /// # Errors

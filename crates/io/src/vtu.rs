@@ -40,8 +40,9 @@ pub fn write_vtu(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
     write_atomic(path, |out| {
         write!(
             out,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-             header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n"
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+             byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece \
+             NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n"
         )?;
         let mut offset = 0;
         for (before, kind, name, components, bytes, after) in arrays {
@@ -93,7 +94,8 @@ pub fn write_vtu(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
 pub fn write_pvd(path: &Path, grids: impl Iterator<Item = (f64, String)>) -> Result<(), IoError> {
     write_atomic(path, |out| {
         out.write_all(
-            b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+            b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
+              byte_order=\"LittleEndian\">\n<Collection>\n",
         )?;
         for (time, file) in grids {
             writeln!(out, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>")?;

@@ -42,7 +42,8 @@ pub enum LcpError {
     },
     /// A friction row cannot be swept with a row that is not its normal's.
     #[error(
-        "friction row {friction} cannot be swept with row {row}: it does not exist, has another normal or other nodes"
+        "friction row {friction} cannot be swept with row {row}: it does not exist, has another normal or \
+         other nodes"
     )]
     Attached {
         /// The row.

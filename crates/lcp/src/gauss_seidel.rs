@@ -6,7 +6,7 @@
 
 use crate::error::LcpError;
 use crate::info::LcpInfo;
-use crate::kernels::{relax_friction, relax_limit, relax_row};
+use crate::kernels::{FrictionRule, relax_friction, relax_limit, relax_row};
 use crate::params::LcpParams;
 use crate::problem::LcpProblem;
 use crate::schedule::Schedule;
@@ -87,8 +87,8 @@ pub fn solve_colored(
     GaussSeidel::default().solve(problem, state, params)
 }
 
-/// The solver of [`sweep_colored`] and [`solve_colored`] with its scratch memory, for callers that sweep often:
-/// it then allocates nothing. It may be dropped at any time.
+/// The solver of [`sweep_colored`] and [`solve_colored`] with its scratch memory, for callers that sweep
+/// often: it then allocates nothing. It may be dropped at any time.
 #[derive(Clone, Debug, Default)]
 pub struct GaussSeidel {
     /// The phases of one sweep.
@@ -327,11 +327,11 @@ where
 
     #[inline(always)]
     fn relax_friction(&self, index: usize) -> f64 {
+        let rule = FrictionRule { relaxation: self.params.relaxation, bound: self.params.friction_bound };
         relax_friction::<RESIDUAL>(
             &self.problem.friction().rows[index],
             self.problem.weights(),
-            self.params.relaxation,
-            self.params.friction_bound,
+            rule,
             &self.y,
             &self.lambda,
             &self.friction,
@@ -355,9 +355,9 @@ struct Phase {
     chunk: usize,
 }
 
-/// Lists the phases of one sweep. Each color is a phase, but successive colors that one thread takes whole are
-/// joined into one. Contacts have many such small colors, and waiting for the other threads costs as much as
-/// a dozen rows.
+/// Lists the phases of one sweep. Each color is a phase, but successive colors that one thread takes whole
+/// are joined into one. Contacts have many such small colors, and waiting for the other threads costs as much
+/// as a dozen rows.
 fn list_phases(problem: &LcpProblem<'_>, phases: &mut Vec<Phase>) {
     phases.clear();
     let (limits, rows, friction) = (problem.distance_limits(), problem.rows(), problem.friction());

@@ -120,13 +120,19 @@ pub(crate) fn limit_multiplier(edge: &DistanceLimit, difference: Vector, old: Ve
     z * ((norm - edge.limit) / (norm * total)).max(0.0)
 }
 
+/// How a friction step is made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrictionRule {
+    pub relaxation: f64,
+    pub bound: FrictionBound,
+}
+
 /// The friction step: lambda_t <- projection of lambda_t - relaxation slip / diagonal onto the region.
 #[inline(always)]
 pub(crate) fn relax_friction<const RESIDUAL: bool>(
     row: &FrictionRow,
     weights: &[f64],
-    relaxation: f64,
-    bound: FrictionBound,
+    rule: FrictionRule,
     y: &impl Slots<Vector>,
     lambda: &impl Slots<f64>,
     friction: &impl Slots<TangentVector>,
@@ -144,7 +150,8 @@ pub(crate) fn relax_friction<const RESIDUAL: bool>(
     for k in 0..4 {
         point += row.coefficients[k] * y.get(row.vertices[k] as usize);
     }
-    let new = friction_multiplier(row, point, old, normal, relaxation * row.inverse_diagonal, bound);
+    let new =
+        friction_multiplier(row, point, old, normal, rule.relaxation * row.inverse_diagonal, rule.bound);
     let change = new - old;
     if change == TangentVector::zeros() {
         return 0.0;

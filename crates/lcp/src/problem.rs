@@ -68,8 +68,8 @@ impl<'a> LcpProblem<'a> {
         Self::new(weights, ConstraintSet::serial(rows), ConstraintSet::default(), ConstraintSet::default())
     }
 
-    /// The same problem with other distance limits. Cost: one pass over their indices; nothing else is checked
-    /// again. It serves where limits are added between sweeps.
+    /// The same problem with other distance limits. Cost: one pass over their indices; nothing else is
+    /// checked again. It serves where limits are added between sweeps.
     ///
     /// # Errors
     /// As [`Self::new`], for the distance limits.

@@ -100,9 +100,9 @@ fn claim(claimed: &AtomicUsize, end: usize) -> Option<usize> {
     None
 }
 
-/// Waits until `ready`. It spins at first: usually another thread ends its chunk within a microsecond. If that
-/// takes long, the system runs another program in place of that thread, or there are more threads than cores.
-/// It then yields, and in the end sleeps, so that a waiting thread leaves its core to others.
+/// Waits until `ready`. It spins at first: usually another thread ends its chunk within a microsecond. If
+/// that takes long, the system runs another program in place of that thread, or there are more threads than
+/// cores. It then yields, and in the end sleeps, so that a waiting thread leaves its core to others.
 fn wait(ready: impl Fn() -> bool) {
     let mut rounds = 0_u32;
     while !ready() {

@@ -8,9 +8,9 @@ use rayon::prelude::*;
 /// Vertices that one task tests.
 const CHUNK: usize = 4096;
 
-/// Lists the pairs of deformable vertices and half-spaces, in order, whose certified distance is at most twice
-/// the `radius` of the vertex [m]. With `displacements` it lists the pairs that come near at some time of the
-/// motion: the distance is linear in time, so it is smallest at the start or at the end.
+/// Lists the pairs of deformable vertices and half-spaces, in order, whose certified distance is at most
+/// twice the `radius` of the vertex [m]. With `displacements` it lists the pairs that come near at some time
+/// of the motion: the distance is linear in time, so it is smallest at the start or at the end.
 ///
 /// The pairs stand in `chunks`, one list after the other.
 pub fn near_half_spaces(

@@ -97,8 +97,8 @@ impl PairList {
         list
     }
 
-    /// Resizes the list to the given number of pairs of each kind and returns it: the caller writes all pairs,
-    /// in order and sorted within a kind.
+    /// Resizes the list to the given number of pairs of each kind and returns it: the caller writes all
+    /// pairs, in order and sorted within a kind.
     pub fn resize_kinds(&mut self, counts: [usize; 5]) -> &mut [Pair] {
         const BLANK: Pair = Pair { elements: [0; 2], vertices: [0; 4] };
         self.starts = [0; 6];

@@ -350,40 +350,36 @@ impl ProximitySearch {
         search_kind::<VertexVertex, 1, 1, SWEPT>(
             scene,
             collisions,
-            &leaves.all,
             (&deformable.particles, &deformable.particles),
             obstacles.map(|o| (&o.particles, &o.particles)),
-            &leaves.particles,
+            (&leaves.all, &leaves.particles),
             scratch,
             vertex_vertex,
         );
         search_kind::<VertexEdge, 1, 2, SWEPT>(
             scene,
             collisions,
-            &leaves.all,
             (&deformable.particles, &deformable.strands),
             obstacles.map(|o| (&o.particles, &o.strands)),
-            &leaves.particles_near_strands,
+            (&leaves.all, &leaves.particles_near_strands),
             scratch,
             vertex_edge,
         );
         search_kind::<VertexTriangle, 1, 3, SWEPT>(
             scene,
             collisions,
-            &leaves.all,
             (&deformable.vertices, &deformable.triangles),
             obstacles.map(|o| (&o.vertices, &o.triangles)),
-            &leaves.vertices,
+            (&leaves.all, &leaves.vertices),
             scratch,
             vertex_triangle,
         );
         search_kind::<EdgeEdge, 2, 2, SWEPT>(
             scene,
             collisions,
-            &leaves.all,
             (&deformable.edges, &deformable.edges),
             obstacles.map(|o| (&o.edges, &o.edges)),
-            &leaves.edges,
+            (&leaves.all, &leaves.edges),
             scratch,
             edge_edge,
         );
@@ -426,14 +422,15 @@ impl ProximitySearch {
 }
 
 /// Searches for one kind of pair: deformable elements of side *a* against all elements of side *b*, and
-/// elements of obstacles of side *a* against deformable ones. Trees are given as (side a, side b).
+/// elements of obstacles of side *a* against deformable ones. Trees are given as (side a, side b); leaves are
+/// numbers, as many as the largest deformable tree has leaves, and those of the obstacles that are searched
+/// for.
 fn search_kind<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     collisions: CollisionMatrix,
-    all_leaves: &[u32],
     deformable: (&Tree<A>, &Tree<B>),
     obstacles: [(&Tree<A>, &Tree<B>); 2],
-    obstacle_leaves: &[Vec<u32>; 2],
+    (all_leaves, obstacle_leaves): (&[u32], &[Vec<u32>; 2]),
     scratch: &[Mutex<Scratch>],
     tasks: &mut Vec<TaskResult>,
 ) {

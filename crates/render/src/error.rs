@@ -36,8 +36,8 @@ pub enum RenderError {
     },
     /// The picture has more pixels than the device can hand over at once.
     #[error(
-        "a picture of {width} x {height} pixels: {adapter} hands over {most} pixels at most; use a smaller --size, such as \
-         {}x{}",
+        "a picture of {width} x {height} pixels: {adapter} hands over {most} pixels at most; use a smaller \
+         --size, such as {}x{}",
         .fits[0], .fits[1]
     )]
     TooManyPixels {
@@ -54,8 +54,8 @@ pub enum RenderError {
     },
     /// The device has no memory for the picture.
     #[error(
-        "a picture of {width} x {height} pixels: {adapter} has no memory for it; use a smaller --size, or a device with \
-         more memory"
+        "a picture of {width} x {height} pixels: {adapter} has no memory for it; use a smaller --size, or a \
+         device with more memory"
     )]
     OutOfMemory {
         /// Width [pixels].
@@ -90,10 +90,11 @@ pub enum RenderError {
 fn driver_remedy() -> &'static str {
     if cfg!(target_os = "linux") {
         "Install a Vulkan driver; without a GPU a software driver serves: Debian, Ubuntu: apt install \
-         mesa-vulkan-drivers; Fedora: dnf install mesa-vulkan-drivers; Arch: pacman -S vulkan-swrast; Alpine: apk add \
-         mesa-vulkan-swrast vulkan-loader; openSUSE: zypper install libvulkan_lvp"
+         mesa-vulkan-drivers; Fedora: dnf install mesa-vulkan-drivers; Arch: pacman -S vulkan-swrast; \
+         Alpine: apk add mesa-vulkan-swrast vulkan-loader; openSUSE: zypper install libvulkan_lvp"
     } else if cfg!(windows) {
-        "Install the graphics card's driver; Windows brings a software driver (WARP) of its own from version 10 on"
+        "Install the graphics card's driver; Windows brings a software driver (WARP) of its own from version \
+         10 on"
     } else if cfg!(target_vendor = "apple") {
         "Metal comes with macOS 10.13 or later; a virtual machine may lack it"
     } else {

@@ -1,8 +1,9 @@
 //! The light of a picture: a soft key light and a sky, both sampled by many small lights.
 //!
-//! Each small light casts hard shadows through a shadow map; in penumbras the shader looks around in it. The sum of many samples of an area light and of
-//! a dome gives soft shadows and ambient occlusion. This is the many-light view of global illumination
-//! (Keller, "Instant Radiosity", SIGGRAPH 1997) with a single bounce of sky light.
+//! Each small light casts hard shadows through a shadow map; in penumbras the shader looks around in it. The
+//! sum of many samples of an area light and of a dome gives soft shadows and ambient occlusion. This is the
+//! many-light view of global illumination (Keller, "Instant Radiosity", SIGGRAPH 1997) with a single bounce
+//! of sky light.
 
 use bowknot_geometry::Vector;
 use std::f64::consts::{PI, TAU};
@@ -91,8 +92,8 @@ pub fn spiral(k: usize, count: usize) -> [f64; 2] {
     [radius * c, radius * s]
 }
 
-/// Where light `k` of `count` looks from, in a key light of radius 1: half of them from its rim, so that whatever
-/// blocks a part of it blocks some of them.
+/// Where light `k` of `count` looks from, in a key light of radius 1: half of them from its rim, so that
+/// whatever blocks a part of it blocks some of them.
 fn key_place(k: usize, count: usize) -> [f64; 2] {
     let inner = count / 2 - count / 4;
     if k < inner {
@@ -133,8 +134,8 @@ mod tests {
         assert!(key.iter().all(|l| l.direction.dot(&right) < 0.0 && l.direction.dot(&back) > 0.0));
     }
 
-    /// The parts of the key light fill it, and none reaches out of it: what no light's own direction sees blocked is
-    /// then in full light.
+    /// The parts of the key light fill it, and none reaches out of it: what no light's own direction sees
+    /// blocked is then in full light.
     #[test]
     fn the_parts_of_the_key_light_lie_within_it() {
         let radius = KEY_HALF_ANGLE.to_radians().tan();

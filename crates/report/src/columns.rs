@@ -15,7 +15,8 @@ pub(super) struct Columns {
     pub(super) rows: usize,
     /// Lines that are no JSON object.
     pub(super) damaged: usize,
-    /// Keys of few rows that were left out, because their columns would take more memory than the file justifies.
+    /// Keys of few rows that were left out, because their columns would take more memory than the file
+    /// justifies.
     pub(super) rare: usize,
     /// Rows that have a number, ascending, and the number.
     values: BTreeMap<String, Vec<(usize, f64)>>,
@@ -46,8 +47,8 @@ impl Columns {
         columns
     }
 
-    /// Drops the columns of the fewest numbers until there are no more places for numbers than bytes in the file. A
-    /// sound file has ten bytes for each.
+    /// Drops the columns of the fewest numbers until there are no more places for numbers than bytes in the
+    /// file. A sound file has ten bytes for each.
     fn drop_rare(&mut self, bytes: usize) {
         let fitting = bytes.max(1 << 16) / self.rows.max(1);
         if self.values.len() <= fitting {

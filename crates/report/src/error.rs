@@ -13,7 +13,8 @@ pub enum ReportError {
     Io(#[from] IoError),
     /// A folder without frames.
     #[error(
-        "{}: no frames in it (frames/*.ply, frames/*.obj or frames.npz): give the folder of a run", path.display()
+        "{}: no frames in it (frames/*.ply, frames/*.obj or frames.npz): give the folder of a \
+         run", path.display()
     )]
     NoFrames {
         /// The folder.

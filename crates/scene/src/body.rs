@@ -26,18 +26,19 @@ pub struct BodySpec {
     /// Generated mesh, see the shapes. Either this or `mesh`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
-    /// The elements of a solid: `linear` or `quadratic`. Linear tetrahedra are too stiff in bending where a body is only a few of
-    /// them thick. Quadratic ones are not: each edge gets a vertex in its middle, which follow those of the mesh in number, and
-    /// each tetrahedron becomes eight small ones in frames and for contact. Default: quadratic for a shape that is fewer than
-    /// three elements thick and more than four times as long as thick, linear otherwise.
+    /// The elements of a solid: `linear` or `quadratic`. Linear tetrahedra are too stiff in bending where a
+    /// body is only a few of them thick. Quadratic ones are not: each edge gets a vertex in its middle, which
+    /// follow those of the mesh in number, and each tetrahedron becomes eight small ones in frames and for
+    /// contact. Default: quadratic for a shape that is fewer than three elements thick and more than four
+    /// times as long as thick, linear otherwise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elements: Option<SolidElements>,
-    /// Whether lines of a cloth's mesh that join vertices of its triangles where no edge does are left out. Other programs sew along
-    /// such lines; sewing is not simulated, so without this key they are refused. Lines that lead elsewhere or run along edges
-    /// are left out with a warning anyway. Default false.
+    /// Whether lines of a cloth's mesh that join vertices of its triangles where no edge does are left out.
+    /// Other programs sew along such lines; sewing is not simulated, so without this key they are refused.
+    /// Lines that lead elsewhere or run along edges are left out with a warning anyway. Default false.
     pub drop_lines: bool,
-    /// Axis of the mesh that points up: `x`, `y` or `z`. With `y`, as most modeling tools have it, y becomes z
-    /// and z becomes -y; with `x`, x becomes z, y becomes x and z becomes y. Default `z`.
+    /// Axis of the mesh that points up: `x`, `y` or `z`. With `y`, as most modeling tools have it, y becomes
+    /// z and z becomes -y; with `x`, x becomes z, y becomes x and z becomes y. Default `z`.
     pub up: Up,
     /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimeters. Default 1.
     pub scale: f64,
@@ -69,8 +70,8 @@ pub struct BodySpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delta: Option<f64>,
     /// Largest ratio of an edge's length to its rest length [1], above 1; inf: no limit. Default: that of
-    /// `[contact]` if it is given there (`paper` gives it), otherwise that of the material of a cloth, none for solids and
-    /// 1.1 for strands.
+    /// `[contact]` if it is given there (`paper` gives it), otherwise that of the material of a cloth, none
+    /// for solids and 1.1 for strands.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stretch_limit: Option<f64>,
     /// Collision groups that the body is in, from 0 to 31 [1]. Default `[0]`.

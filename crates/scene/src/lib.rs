@@ -32,7 +32,6 @@ mod origin;
 mod params;
 mod pin;
 mod read;
-mod reader;
 pub mod shapes;
 mod short;
 mod source;

@@ -23,8 +23,9 @@ pub struct ObstacleSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
     /// An animation, relative to the scene file: a folder of meshes of equal elements, taken in the order of
-    /// their names, or an NPZ archive of `X[f,n,3]` and `F[m,3]`. Frames are joined linearly. During empty frames, which
-    /// have no vertices or all at one place, the obstacle is not there. This, `mesh`, or `shape`.
+    /// their names, or an NPZ archive of `X[f,n,3]` and `F[m,3]`. Frames are joined linearly. During empty
+    /// frames, which have no vertices or all at one place, the obstacle is not there. This, `mesh`, or
+    /// `shape`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sequence: Option<PathBuf>,
     /// Frames of the sequence a second [1/s]. Default 30.
@@ -32,13 +33,13 @@ pub struct ObstacleSpec {
     /// When the sequence begins [s]; it is held at its first frame before, and at its last one after. Default
     /// 0.
     pub sequence_start: f64,
-    /// When the obstacle appears [s]; before, it meets nothing. It waits while anything is in its place. Default 0: it is
-    /// there from the start.
+    /// When the obstacle appears [s]; before, it meets nothing. It waits while anything is in its place.
+    /// Default 0: it is there from the start.
     pub appears: f64,
     /// When it vanishes [s], later than `appears`; what rests on it then falls. Default inf.
     pub vanishes: f64,
-    /// Axis of the mesh that points up: `x`, `y` or `z`. With `y`, as most modeling tools have it, y becomes z
-    /// and z becomes -y; with `x`, x becomes z, y becomes x and z becomes y. Default `z`.
+    /// Axis of the mesh that points up: `x`, `y` or `z`. With `y`, as most modeling tools have it, y becomes
+    /// z and z becomes -y; with `x`, x becomes z, y becomes x and z becomes y. Default `z`.
     pub up: Up,
     /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimeters. Default 1.
     pub scale: f64,

@@ -52,14 +52,16 @@ pub enum CollisionEvery {
     Step,
 }
 
-/// A set of defaults for the tables `[contact]` and `[solver]`; [`crate::Scene::with_preset`] has all of them.
+/// A set of defaults for the tables `[contact]` and `[solver]`; [`crate::Scene::with_preset`] has all of
+/// them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
     /// Everything that measurements showed to pay, [`bowknot_twoway::Params::fast`].
     #[default]
     Fast,
-    /// [`Self::Fast`] with loose tolerances, [`bowknot_twoway::Params::quick`]: for previews. Nothing intersects either.
+    /// [`Self::Fast`] with loose tolerances, [`bowknot_twoway::Params::quick`]: for previews. Nothing
+    /// intersects either.
     Quick,
     /// The method as the paper describes it, [`bowknot_twoway::Params::paper`].
     Paper,

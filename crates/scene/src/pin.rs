@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 pub struct PinSpec {
     /// Name of the body. May be left out if there is only one.
     pub body: String,
-    /// Vertices by index in the body's mesh, from 0; of quadratic elements also the middles of edges between them. Default none.
+    /// Vertices by index in the body's mesh, from 0; of quadratic elements also the middles of edges between
+    /// them. Default none.
     pub vertices: Vec<u32>,
     /// Vertices within an axis-aligned box of the scene at its start. Default none.
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
@@ -21,11 +22,12 @@ pub struct PinSpec {
     /// `z-max`. Default none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<Side>,
-    /// How many vertices of each strand are held, from its root on [1]: 1 hinges strands, 2 or more clamp their direction as
-    /// well. Default 0.
+    /// How many vertices of each strand are held, from its root on [1]: 1 hinges strands, 2 or more clamp
+    /// their direction as well. Default 0.
     pub roots: usize,
-    /// Which end of each strand is its root: `first`, the vertex that comes first in the mesh; `last`, the one farthest from that
-    /// along the strand; `nearest`, that of the two which is nearer to an obstacle at the start. Default `first`.
+    /// Which end of each strand is its root: `first`, the vertex that comes first in the mesh; `last`, the
+    /// one farthest from that along the strand; `nearest`, that of the two which is nearer to an obstacle at
+    /// the start. Default `first`.
     pub root_end: RootEnd,
     /// Rigid motion over time, see the motions. Default: held where they are.
     #[serde(skip_serializing_if = "Option::is_none")]

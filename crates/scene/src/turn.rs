@@ -1,5 +1,5 @@
-//! Rotations with the sines of `libm`. Those of nalgebra come from the system: on Linux they depend on the version
-//! of its library, and on whether the processor has fused multiply-add.
+//! Rotations with the sines of `libm`. Those of nalgebra come from the system: on Linux they depend on the
+//! version of its library, and on whether the processor has fused multiply-add.
 
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion};

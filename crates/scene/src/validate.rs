@@ -1,4 +1,5 @@
-//! Checks of a whole scene: every part by itself, and that the names by which parts refer to each other exist.
+//! Checks of a whole scene: every part by itself, and that the names by which parts refer to each other
+//! exist.
 
 use crate::description::Scene;
 use crate::error::{SceneError, SceneProblem, nearest};

@@ -24,8 +24,8 @@ fn built_in_scenes_are_files_that_run_as_they_are() {
         let scene = Scene::builtin(builtin.name, 1.0).expect("a built-in scene");
         let name = builtin.name;
         let text = format!(
-            "# {name}: {}.\n# The built-in scene at scale 1; `bowknot run {name}` runs the same. A test keeps this \
-             file equal to it.\n\n{}",
+            "# {name}: {}.\n# The built-in scene at scale 1; `bowknot run {name}` runs the same. A test \
+             keeps this file equal to it.\n\n{}",
             builtin.summary,
             scene.to_short_toml()
         );
@@ -58,8 +58,10 @@ fn named_materials_are_files_with_their_sources() {
         let code = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../dynamics/src/material/{file}.rs"));
         let code = fs::read_to_string(code).expect("the source of the materials");
         let mut text = format!(
-            "# The named materials of kind `{}`: numbers in SI units, and their sources. A scene names one with\n\
-             # `material = \"NAME\"`, or changes single numbers: `material = {{ base = \"NAME\", density = .. }}`.\n\
+            "# The named materials of kind `{}`: numbers in SI units, and their sources. A scene names one \
+             with\n\
+             # `material = \"NAME\"`, or changes single numbers: `material = {{ base = \"NAME\", density = \
+             .. }}`.\n\
              # A test keeps this file equal to the presets of `crates/dynamics/src/material/{file}.rs`.\n",
             kind.name()
         );

@@ -19,7 +19,7 @@ pub use bowknot_proximity as proximity;
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use params::{Bound, ForwardParams, TrustRegionRule};
 pub use rounding::Rounding;
-pub use stepper::{Contacts, StepReport, Stepper};
+pub use stepper::{Contacts, StepReport, Stepper, Tubes};
 pub use trust_regions::TrustRegions;
 
 /// The README's example is tested with the documentation.

@@ -2,12 +2,12 @@
 
 /// Absolute rounding bounds at the scale of a scene's coordinates.
 ///
-/// Let u = 2^-53, ulp(C) = 2 u C, and C the largest coordinate before or after a step, at least twice the longest
-/// travel. The update x + alpha d is rounded twice, by at most
-/// u |alpha d| + u |x'| <= 1.5 u C in each component, which is less than 1.5 sqrt(3) u C = 1.3 ulp(C) along
-/// any unit vector. The closing speed n . d, from which a share is computed, is off by at most 4 u |d|, and
-/// its factor for the cap of the travel, the shares and the division that makes alpha of them round five
-/// times more: 9 u C/2 = 2.25 ulp(C) over the travel of a step. `step` = 4 ulp(C) covers both.
+/// Let u = 2^-53, ulp(C) = 2 u C, and C the largest coordinate before or after a step, at least twice the
+/// longest travel. The update x + alpha d is rounded twice, by at most u |alpha d| + u |x'| <= 1.5 u C in
+/// each component, which is less than 1.5 sqrt(3) u C = 1.3 ulp(C) along any unit vector. The closing speed n
+/// . d, from which a share is computed, is off by at most 4 u |d|, and its factor for the cap of the travel,
+/// the shares and the division that makes alpha of them round five times more: 9 u C/2 = 2.25 ulp(C) over the
+/// travel of a step. `step` = 4 ulp(C) covers both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     /// By how much, at most, one side closes a gap beyond its share in one step [m].

@@ -38,8 +38,8 @@ pub struct StepReport {
     pub slowest: Option<u32>,
     /// Largest |alpha (y - x)| [m].
     pub largest_move: f64,
-    /// Largest remaining distance of a vertex that no pair holds back [m]. The caller knows which vertices these are;
-    /// [`Stepper::advance`] leaves it 0, and the next one as well.
+    /// Largest remaining distance of a vertex that no pair holds back [m]. The caller knows which vertices
+    /// these are; [`Stepper::advance`] leaves it 0, and the next one as well.
     pub unhindered: f64,
     /// The same of prescribed vertices alone [m].
     pub unhindered_lag: f64,
@@ -64,6 +64,23 @@ pub struct Stepper {
     rounding: Option<Rounding>,
     /// Largest coordinate of positions and targets, at least twice the longest displacement [m].
     largest_coordinate: f64,
+}
+
+/// Where vertices are in a long step: along their paths, all at the same path time t in [0, 1], and not far
+/// from there.
+#[derive(Clone, Copy, Debug)]
+pub struct Tubes<'a> {
+    /// The path of each vertex [m].
+    pub paths: &'a [Vector],
+    /// How far each vertex may deviate from its path [m]. Empty: not at all.
+    pub radii: &'a [f64],
+}
+
+impl Tubes<'_> {
+    #[inline]
+    fn radius(&self, vertex: u32) -> f64 {
+        if self.radii.is_empty() { 0.0 } else { self.radii[vertex as usize] }
+    }
 }
 
 impl Stepper {
@@ -112,9 +129,9 @@ impl Stepper {
         not_finite
     }
 
-    /// Lets no vertex travel farther than `longest(vertex)` [m]. Call it before the pairs limit the step: they
-    /// then share their gaps between the travels that remain. `obstacle_vertices` and the groups, of which
-    /// there are `group_count`, still move as one, see [`Self::limit_by_bodies`].
+    /// Lets no vertex travel farther than `longest(vertex)` [m]. Call it before the pairs limit the step:
+    /// they then share their gaps between the travels that remain. `obstacle_vertices` and the groups, of
+    /// which there are `group_count`, still move as one, see [`Self::limit_by_bodies`].
     pub fn cap_travel(
         &mut self,
         model: &CollisionModel,
@@ -223,34 +240,19 @@ impl Stepper {
         false
     }
 
-    /// As [`Self::limit_by_planes`], for vertices that move along `paths` [m], all at the same path time t in
-    /// [0, 1], and deviate from there by at most the radius of their `tubes` [m]. A pair whose slab stays
+    /// As [`Self::limit_by_planes`], for vertices that move in their `tubes`. A pair whose slab stays
     /// open while it moves along is not limited, so that motion common to both sides is free.
     ///
     /// Let the slab move by t f. Side *a* closes it by at most t max over a of -n.(u_i - f) plus its tube,
     /// side *b* by at most t max over b of n.(u_j - f) plus its own. In the sum f cancels; the sum is linear
     /// in t, so it is largest at an end.
-    pub fn limit_by_moving_planes(
-        &self,
-        contacts: &Contacts<'_>,
-        paths: &[Vector],
-        tubes: &[f64],
-        damping: f64,
-    ) -> usize {
+    pub fn limit_by_moving_planes(&self, contacts: &Contacts<'_>, tubes: &Tubes<'_>, damping: f64) -> usize {
         let frozen = AtomicUsize::new(0);
         for kind in PairKind::ALL {
             contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).for_each(|p| {
                 let vertices = &contacts.pairs.pairs()[p].vertices;
                 let (separation, min_separation) = (&contacts.separations[p], contacts.min_separations[p]);
-                if self.limit_by_moving_plane(
-                    kind,
-                    vertices,
-                    separation,
-                    min_separation,
-                    paths,
-                    tubes,
-                    damping,
-                ) {
+                if self.limit_by_moving_plane(kind, vertices, separation, min_separation, tubes, damping) {
                     frozen.fetch_add(1, Ordering::Relaxed);
                 }
             });
@@ -267,17 +269,15 @@ impl Stepper {
         vertices: &[u32; 4],
         separation: &Separation,
         min_separation: f64,
-        paths: &[Vector],
-        tubes: &[f64],
+        tubes: &Tubes<'_>,
         damping: f64,
     ) -> bool {
-        let tube = |v: u32| tubes[v as usize];
-        !self.stays_open(kind, vertices, separation, min_separation, paths, tube, damping)
+        !self.stays_open(kind, vertices, separation, min_separation, tubes, damping)
             && self.limit_by_plane(kind, vertices, separation, min_separation, damping)
     }
 
     /// Whether the slab of a pair stays open while it moves along with the vertices, see
-    /// [`Self::limit_by_moving_planes`]. `tube(vertex)` is the radius of the vertex's tube [m].
+    /// [`Self::limit_by_moving_planes`].
     #[inline]
     pub fn stays_open(
         &self,
@@ -285,8 +285,7 @@ impl Stepper {
         vertices: &[u32; 4],
         separation: &Separation,
         min_separation: f64,
-        paths: &[Vector],
-        tube: impl Fn(u32) -> f64,
+        tubes: &Tubes<'_>,
         damping: f64,
     ) -> bool {
         let (count, side_a) = (kind.vertex_count(), kind.side_a());
@@ -294,8 +293,8 @@ impl Stepper {
             let mut closing = f64::NEG_INFINITY;
             let mut radius = 0.0f64;
             for &v in &vertices[places] {
-                closing = closing.max(sign * separation.normal.dot(&paths[v as usize]));
-                radius = radius.max(tube(v));
+                closing = closing.max(sign * separation.normal.dot(&tubes.paths[v as usize]));
+                radius = radius.max(tubes.radius(v));
             }
             (closing, radius)
         };
@@ -308,8 +307,8 @@ impl Stepper {
         separation.width > rounding.frozen && closing <= allowed
     }
 
-    /// Largest coordinate of positions and targets of this step, at least twice the longest displacement [m]: what the bounds
-    /// of [`Rounding`] hold for.
+    /// Largest coordinate of positions and targets of this step, at least twice the longest displacement [m]:
+    /// what the bounds of [`Rounding`] hold for.
     pub fn largest_coordinate(&self) -> f64 {
         self.largest_coordinate
     }
@@ -531,7 +530,8 @@ fn advance_chunk(
     report
 }
 
-/// The report of two ranges of vertices, of which `a` is the first. Of equally slow vertices the first counts.
+/// The report of two ranges of vertices, of which `a` is the first. Of equally slow vertices the first
+/// counts.
 fn join(a: StepReport, b: StepReport) -> StepReport {
     let slowest = if b.remaining > a.remaining { b } else { a };
     StepReport {

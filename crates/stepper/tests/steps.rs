@@ -144,8 +144,8 @@ fn an_obstacle_moves_as_one() {
     }
 }
 
-/// The vertex wants to go a hundred times as far as the triangle. With capped travels both get half of the gap
-/// that they can close, and the cap holds where no pair does.
+/// The vertex wants to go a hundred times as far as the triangle. With capped travels both get half of the
+/// gap that they can close, and the cap holds where no pair does.
 #[test]
 fn capped_travels_share_the_gap_and_no_vertex_goes_farther() {
     let x = vertex_over_triangle(0.1);

@@ -6,7 +6,7 @@
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{BodyContact, HalfSpaceContact, Params, ResolveInput, Resolver};
+use bowknot_twoway::{BodyContact, ContactData, HalfSpaceContact, Params, ResolveInput, Resolver};
 
 const DT: f64 = 0.01;
 const SUBSTEPS: usize = 20;
@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         |k: usize, default: usize| std::env::args().nth(k).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (cells, frames) = (argument(1, 30), argument(2, 50));
     println!(
-        "means over {frames} frames of {SHEETS} sheets of {cells} x {cells} cells; downhill: speed of each at the end"
+        "means over {frames} frames of {SHEETS} sheets of {cells} x {cells} cells; downhill: speed of each \
+         at the end"
     );
     println!(
         "model    mu    steps  searches  rows  friction  backward ms  total ms  largest slip mm  downhill m/s"
@@ -73,9 +74,12 @@ fn slide(
     let model_of = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; SHEETS], vec![ground])?;
     let mut params = Params::fast();
     params.contact.friction_model = model;
-    let mut resolver = Resolver::new(model_of, &x, &vec![1.0; x.len()], params)?
-        .with_bodies(vec![BodyContact { friction, ..BodyContact::default() }; SHEETS])?
-        .with_half_spaces(vec![HalfSpaceContact { friction, ..HalfSpaceContact::default() }])?;
+    let contact = ContactData {
+        bodies: vec![BodyContact { friction, ..BodyContact::default() }; SHEETS],
+        half_spaces: vec![HalfSpaceContact { friction, ..HalfSpaceContact::default() }],
+        ..ContactData::default()
+    };
+    let mut resolver = Resolver::with_contact(model_of, &x, &vec![1.0; x.len()], contact, params)?;
 
     // Gravity has the slope: x points downhill.
     let slope = 20f64.to_radians();
@@ -108,7 +112,8 @@ fn slide(
     let speeds: Vec<String> = v.chunks(n * n).map(|sheet| format!("{:.4}", speed(sheet))).collect();
     let [steps, searches, rows, rough, backward, total] = sums;
     println!(
-        "{:7} {friction:4.1} {steps:8.2} {searches:9.2} {rows:5.0} {rough:9.0} {backward:12.2} {total:9.2} {:17.4}  {}",
+        "{:7} {friction:4.1} {steps:8.2} {searches:9.2} {rows:5.0} {rough:9.0} {backward:12.2} {total:9.2} \
+         {:17.4}  {}",
         format!("{model:?}"),
         1e3 * slip,
         speeds.join(" "),

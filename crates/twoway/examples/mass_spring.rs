@@ -57,8 +57,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut v = vec![Vector::zeros(); x.len()];
     for frame in 0..frames {
         let start = x.clone();
-        // Gravity acts before the substeps: the displacement of the step, from which the velocity is taken after
-        // collisions, then has all of its impulse. Within the substeps it would have half of it.
+        // Gravity acts before the substeps: the displacement of the step, from which the velocity is taken
+        // after collisions, then has all of its impulse. Within the substeps it would have half of it.
         v[..cloth].iter_mut().for_each(|v| v.z -= 9.81 * DT);
         let y = integrate(&start, &v, cloth, &springs);
         let input = ResolveInput { time_step: Some(DT), ..ResolveInput::default() };
@@ -67,7 +67,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             v[i] = (x[i] - start[i]) / DT;
         }
         println!(
-            "frame {frame:3}: {:3} steps, {:3} searches, {:6} pairs, gap {:8.3} mm, {:7.4} mm from the target, {:.3} s",
+            "frame {frame:3}: {:3} steps, {:3} searches, {:6} pairs, gap {:8.3} mm, {:7.4} mm from the \
+             target, {:.3} s",
             report.steps,
             report.searches,
             report.pairs,

@@ -9,7 +9,7 @@
 
 use bowknot_twoway::geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_twoway::proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{BodyContact, HalfSpaceContact, Params, ResolveInput, Resolver};
+use bowknot_twoway::{BodyContact, ContactData, HalfSpaceContact, Params, ResolveInput, Resolver};
 use std::error::Error;
 
 /// A square sheet [m, kg, s; z up].
@@ -109,13 +109,16 @@ fn resolver(cloth: &Cloth, x: &[Point], friction: f64) -> Result<Resolver, Box<d
     let of_cloth = BodyContact { friction, stretch_limit: Some(f64::INFINITY), ..BodyContact::default() };
     let of_obstacle = BodyContact { friction, ..BodyContact::default() };
     let of_ground = HalfSpaceContact { friction, ..HalfSpaceContact::default() };
-    Ok(Resolver::new(model, x, &vec![cloth.mass; x.len()], Params::fast())?
-        .with_bodies(vec![of_cloth, of_obstacle])?
-        .with_half_spaces(vec![of_ground])?)
+    let contact = ContactData {
+        bodies: vec![of_cloth, of_obstacle],
+        half_spaces: vec![of_ground],
+        ..ContactData::default()
+    };
+    Ok(Resolver::with_contact(model, x, &vec![cloth.mass; x.len()], contact, Params::fast())?)
 }
 
-/// Simulates frames of 1/60 s, each of ten substeps. Returns the cloth, the two-way steps of all substeps, and
-/// the smallest gap [m].
+/// Simulates frames of 1/60 s, each of ten substeps. Returns the cloth, the two-way steps of all substeps,
+/// and the smallest gap [m].
 pub fn simulate(cells: usize, friction: f64, frames: usize) -> Result<(Cloth, usize, f64), Box<dyn Error>> {
     let dt = 1.0 / 600.0;
     let mut cloth = Cloth::sheet(cells + 1, 1.0, 0.75);

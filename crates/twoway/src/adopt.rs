@@ -4,6 +4,7 @@ use crate::call::CallInput;
 use crate::error::ResolveError;
 use crate::multipliers::PairMultipliers;
 use crate::resolver::{Resolver, check_pairs};
+use crate::search::TrustRegionSearch;
 use crate::stages::{BackwardStep, ForwardStep, Search};
 use crate::statistics::Statistics;
 use bowknot_geometry::{Point, Vector};
@@ -26,10 +27,10 @@ pub struct CallEnd<'a> {
     pub near: Option<&'a PairList>,
 }
 
-impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
+impl<B: BackwardStep, F: ForwardStep<TrustRegionSearch>> Resolver<TrustRegionSearch, B, F> {
     /// Makes [`Self::state`] that of a `call` which something else has made: pairs in range at its end, their
-    /// contact geometry, and what they carry. Adds to `statistics` what [`Self::resolve_with`] adds at the end
-    /// of a call, but for residuals and counts of the stages. Entries of pairs that are out of range are
+    /// contact geometry, and what they carry. Adds to `statistics` what [`Self::resolve_with`] adds at the
+    /// end of a call, but for residuals and counts of the stages. Entries of pairs that are out of range are
     /// dropped: nothing presses there.
     ///
     /// # Errors

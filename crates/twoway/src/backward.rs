@@ -7,9 +7,10 @@
 //!
 //! y = y' + W J^T lambda,   y' = w (m^ y0 + mu x).
 //!
-//! Most vertices are in no contact and at no taut edge: mu = 0 and y = y' = y0. Their entries are written once per
-//! call. A step writes those of the vertices that this step or the last one moves away from y0 (`live.rs`). It
-//! reads all pairs in range once, to select its rows (`selection.rs`), and copies y at the end.
+//! Most vertices are in no contact and at no taut edge: mu = 0 and y = y' = y0. Their entries are written
+//! once per call. A step writes those of the vertices that this step or the last one moves away from y0
+//! (`live.rs`). It reads all pairs in range once, to select its rows (`selection.rs`), and copies y at the
+//! end.
 
 use crate::blocked::Blocked;
 use crate::chunks::{self, Chunks};
@@ -73,7 +74,8 @@ pub struct LcpBackward<K = ColoredSweeps> {
     body_residuals: Vec<BodyResidual>,
 }
 
-/// Factor on the stretch limits of edges that the target keeps within their limits itself: their rows only guard.
+/// Factor on the stretch limits of edges that the target keeps within their limits itself: their rows only
+/// guard.
 pub const GUARDED_STRETCH: f64 = 1.0125;
 
 /// Sums over some vertices of a body.
@@ -164,8 +166,8 @@ impl<K: RowSolver> LcpBackward<K> {
         scene.params().contact.edge_form == EdgeForm::Ball && self.solver.keeps_to_live_edges()
     }
 
-    /// Notes which vertices are movable, and the stretch limits; returns whether they differ from those of the
-    /// last call.
+    /// Notes which vertices are movable, and the stretch limits; returns whether they differ from those of
+    /// the last call.
     fn edges_changed(&mut self, scene: &CollisionScene, state: &ResolveState) -> bool {
         let bodies = 0..scene.model().bodies().len() as u32;
         let limits = || bodies.clone().map(|body| scene.stretch_limit(body));
@@ -202,8 +204,8 @@ impl<K: RowSolver> LcpBackward<K> {
     /// Largest net and mean residual of a body [m], see [`Residuals`], and largest residual of a vertex [m].
     fn body_residuals(&mut self, scene: &CollisionScene, state: &ResolveState) -> [f64; 3] {
         let Self { y, free, weights, residuals, body_residuals, .. } = self;
-        // The stationarity residual is y0 + m^-1 J^T lambda - x, and J^T lambda = (y - y')/w. Successive vertices
-        // of one body make one entry.
+        // The stationarity residual is y0 + m^-1 J^T lambda - x, and J^T lambda = (y - y')/w. Successive
+        // vertices of one body make one entry.
         residuals.run(y.len(), |range, entries| {
             for v in range.filter(|&v| state.is_movable(v)) {
                 let (body, mass) = (scene.model().vertex_body()[v], scene.relative_mass(v));
@@ -395,6 +397,7 @@ impl<K: RowSolver> LcpBackward<K> {
     /// Solves for the contacts and for those edges that act or could come to act.
     fn solve_live(&mut self, scene: &CollisionScene, state: &ResolveState) -> Result<(), lcp::LcpError> {
         let parts = LiveParts {
+            weights: &self.weights,
             edges: &self.edges,
             live: &mut self.live,
             touched: &mut self.touched,
@@ -402,9 +405,8 @@ impl<K: RowSolver> LcpBackward<K> {
             damped: self.proximal.damped(),
             free: &self.free,
         };
-        let (weights, y) = (&self.weights, &mut self.y);
-        let (lambda, friction) = (&mut self.lambda, &mut self.friction);
-        let mut rows = LiveRows::new(scene, state, weights, &self.contacts, parts, y, lambda, friction)?;
+        let (y, lambda, friction) = (&mut self.y, &mut self.lambda, &mut self.friction);
+        let mut rows = LiveRows::new(scene, state, &self.contacts, parts, y, lambda, friction)?;
         let solved = self.solver.solve_live(&mut rows);
         rows.finish();
         solved

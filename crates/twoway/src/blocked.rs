@@ -11,8 +11,8 @@ use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 use bowknot_geometry::Point;
 
-/// Number of steps without progress after which a vertex is blocked: fewer than the 24 steps of a call that another
-/// Newton iteration follows.
+/// Number of steps without progress after which a vertex is blocked: fewer than the 24 steps of a call that
+/// another Newton iteration follows.
 const MAX_STEPS_WITHOUT_PROGRESS: usize = 6;
 
 /// Smallest decrease of the distance to the target that counts as progress, in mean edge lengths.

@@ -4,7 +4,7 @@
 //! - a *minimum separation* xi_p, below which no step closes its gap: the mean of both sides' thicknesses, if
 //!   at least one side has one. A side without a thickness counts as 0 if it is a half-space, and with the
 //!   scene's minimum separation otherwise;
-//! - a *desired distance* delta_p: the mean of both sides' `delta`. A side without one counts with the
+//! - a *contact distance* delta_p: the mean of both sides' `delta`. A side without one counts with the
 //!   scene's delta, and a side's delta is at least [`crate::MIN_SEPARATION_MARGIN`] times its thickness. For
 //!   a grain, `delta` is its diameter: the mean of two diameters is the sum of two radii;
 //! - a *coefficient of friction* mu: the geometric mean of both coefficients, unless the pair of bodies has
@@ -23,7 +23,7 @@ pub struct BodyContact {
     /// Guaranteed smallest gap [m] to a body of the same thickness: the minimum separation of a pair is the
     /// mean of both sides'. None: the minimum separation of the scene.
     pub thickness: Option<f64>,
-    /// Desired distance [m] of contacts with a body of the same `delta`, the grain size of particles. A pair
+    /// Contact distance [m] of contacts with a body of the same `delta`, the grain size of particles. A pair
     /// has the mean of both sides'. None: `delta` of the scene.
     pub delta: Option<f64>,
     /// Coefficient of Coulomb friction [1], at least 0. A pair has the geometric mean of both sides'. 0, the
@@ -65,6 +65,17 @@ pub struct PairFriction {
     pub friction: f64,
 }
 
+/// Contact data of a scene. A list without entries stands for defaults throughout.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactData {
+    /// One entry per body of the collision model, obstacles included.
+    pub bodies: Vec<BodyContact>,
+    /// One entry per half-space of the collision model.
+    pub half_spaces: Vec<HalfSpaceContact>,
+    /// Coefficients of friction of pairs of bodies, in place of the means of both sides'.
+    pub pairs: Vec<PairFriction>,
+}
+
 /// Checked contact data of all bodies and half-spaces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactTable {
@@ -76,14 +87,20 @@ pub struct ContactTable {
 }
 
 impl ContactTable {
-    /// The table of a scene without contact data: all bodies and half-spaces have the scene's values and no
-    /// friction.
-    pub fn new(model: &CollisionModel) -> Self {
-        Self {
-            bodies: vec![BodyContact::default(); model.bodies().len()],
-            half_spaces: vec![HalfSpaceContact::default(); model.half_spaces().len()],
-            ..Self::default()
-        }
+    /// The table of a scene.
+    ///
+    /// # Errors
+    /// [`ResolveError::Contact`] with every entry out of its range, a wrong number of entries, a side of a
+    /// pair that does not exist, a pair that is named twice.
+    pub(crate) fn new(model: &CollisionModel, data: ContactData) -> Result<Self, ResolveError> {
+        let mut checks = Checks::default();
+        let bodies = one_each(&mut checks, "bodies", data.bodies, model.bodies().len());
+        let half_spaces = one_each(&mut checks, "half_spaces", data.half_spaces, model.half_spaces().len());
+        let pairs = sorted_pairs(&mut checks, &data.pairs, [bodies.len(), half_spaces.len()]);
+        checks.finish().map_err(ResolveError::Contact)?;
+        let frictional =
+            bodies.iter().any(|b| b.friction > 0.0) || pairs.iter().any(|(_, friction)| *friction > 0.0);
+        Ok(Self { bodies, half_spaces, pairs, frictional })
     }
 
     /// One entry per body.
@@ -137,63 +154,6 @@ impl ContactTable {
             ContactSide::HalfSpace(h) => self.half_spaces[h as usize].friction,
         }
     }
-
-    pub(crate) fn set_bodies(&mut self, bodies: Vec<BodyContact>) -> Result<(), ResolveError> {
-        let mut checks = Checks::default();
-        check_count(&mut checks, "bodies", bodies.len(), self.bodies.len());
-        for (b, body) in bodies.iter().enumerate() {
-            checks.within(&format!("bodies[{b}]"), body);
-        }
-        self.accept(checks, |table| table.bodies = bodies)
-    }
-
-    pub(crate) fn set_half_spaces(&mut self, half_spaces: Vec<HalfSpaceContact>) -> Result<(), ResolveError> {
-        let mut checks = Checks::default();
-        check_count(&mut checks, "half_spaces", half_spaces.len(), self.half_spaces.len());
-        for (h, half_space) in half_spaces.iter().enumerate() {
-            checks.within(&format!("half_spaces[{h}]"), half_space);
-        }
-        self.accept(checks, |table| table.half_spaces = half_spaces)
-    }
-
-    pub(crate) fn set_pairs(&mut self, pairs: &[PairFriction]) -> Result<(), ResolveError> {
-        let mut checks = Checks::default();
-        let mut entries: Vec<([ContactSide; 2], f64)> = Vec::new();
-        for (index, pair) in pairs.iter().enumerate() {
-            let path = format!("friction_pairs[{index}]");
-            checks.within(&path, pair);
-            for side in pair.sides {
-                let (what, given, known) = match side {
-                    ContactSide::Body(b) => ("body", b, self.bodies.len()),
-                    ContactSide::HalfSpace(h) => ("half-space", h, self.half_spaces.len()),
-                };
-                checks.require(
-                    (given as usize) < known,
-                    &format!("{path}.sides"),
-                    format!("{what} {given}"),
-                    format!("must be below {known}, the number of them"),
-                );
-            }
-            let sides = sorted(pair.sides);
-            checks.require(
-                entries.iter().all(|(other, _)| *other != sides),
-                &format!("{path}.sides"),
-                format!("{:?}", pair.sides),
-                "must differ from the sides of other pairs",
-            );
-            entries.push((sides, pair.friction));
-        }
-        entries.sort_by_key(|entry| entry.0);
-        self.accept(checks, |table| table.pairs = entries)
-    }
-
-    fn accept(&mut self, checks: Checks, change: impl FnOnce(&mut Self)) -> Result<(), ResolveError> {
-        checks.finish().map_err(ResolveError::Contact)?;
-        change(self);
-        self.frictional = self.bodies.iter().any(|b| b.friction > 0.0)
-            || self.pairs.iter().any(|(_, friction)| *friction > 0.0);
-        Ok(())
-    }
 }
 
 impl Parameters for BodyContact {
@@ -231,10 +191,57 @@ fn sorted(mut sides: [ContactSide; 2]) -> [ContactSide; 2] {
     sides
 }
 
-/// There must be one entry for each body, or half-space, of the model.
-fn check_count(checks: &mut Checks, what: &str, given: usize, needed: usize) {
-    let allowed = format!("must be {needed}, one per entry of the model");
-    checks.require(given == needed, &format!("{what}.len()"), given, allowed);
+/// The entries that are given, one for each body or half-space of the model; defaults if none are given.
+fn one_each<T: Parameters + Clone + Default>(
+    checks: &mut Checks,
+    what: &str,
+    given: Vec<T>,
+    count: usize,
+) -> Vec<T> {
+    if given.is_empty() {
+        return vec![T::default(); count];
+    }
+    let allowed = format!("must be {count}, one per entry of the model, or 0");
+    checks.require(given.len() == count, &format!("{what}.len()"), given.len(), allowed);
+    for (index, entry) in given.iter().enumerate() {
+        checks.within(&format!("{what}[{index}]"), entry);
+    }
+    given
+}
+
+/// Coefficients of friction by sorted sides, ascending, of so many bodies and half-spaces.
+fn sorted_pairs(
+    checks: &mut Checks,
+    pairs: &[PairFriction],
+    [bodies, half_spaces]: [usize; 2],
+) -> Vec<([ContactSide; 2], f64)> {
+    let mut entries: Vec<([ContactSide; 2], f64)> = Vec::new();
+    for (index, pair) in pairs.iter().enumerate() {
+        let path = format!("friction_pairs[{index}]");
+        checks.within(&path, pair);
+        for side in pair.sides {
+            let (what, given, known) = match side {
+                ContactSide::Body(b) => ("body", b, bodies),
+                ContactSide::HalfSpace(h) => ("half-space", h, half_spaces),
+            };
+            checks.require(
+                (given as usize) < known,
+                &format!("{path}.sides"),
+                format!("{what} {given}"),
+                format!("must be below {known}, the number of them"),
+            );
+        }
+        let sides = sorted(pair.sides);
+        checks.require(
+            entries.iter().all(|(other, _)| *other != sides),
+            &format!("{path}.sides"),
+            format!("{:?}", pair.sides),
+            "must differ from the sides of other pairs",
+        );
+        entries.push((sides, pair.friction));
+    }
+    entries.sort_by_key(|entry| entry.0);
+    entries
 }
 
 #[cfg(test)]

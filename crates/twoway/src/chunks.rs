@@ -1,11 +1,12 @@
-//! Loops over chunks of a fixed size, in parallel where there are several. Chunks do not depend on the number of
-//! threads, and their results are joined in order, so results have the same bits for any number of threads.
+//! Loops over chunks of a fixed size, in parallel where there are several. Chunks do not depend on the number
+//! of threads, and their results are joined in order, so results have the same bits for any number of
+//! threads.
 
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Vertices, edges or pairs of a chunk: some tens of microseconds of work, a few times what it takes to wake a
-/// thread. Fewer are one chunk, which the calling thread runs.
+/// Vertices, edges or pairs of a chunk: some tens of microseconds of work, a few times what it takes to wake
+/// a thread. Fewer are one chunk, which the calling thread runs.
 const CHUNK: usize = 2048;
 
 /// Results of chunks; their buffers are kept from call to call.

@@ -14,8 +14,8 @@ const MAX_FACTOR: f64 = 2.0;
 const MAX_GROWTH: f64 = 1e3;
 
 /// Largest number of corrections in a backward step. They remove the large error that sweeps begin with. With
-/// friction there is no energy that all of them lower, and in heaps of grains, which take thousands of sweeps,
-/// corrections without end keep the multipliers from converging.
+/// friction there is no energy that all of them lower, and in heaps of grains, which take thousands of
+/// sweeps, corrections without end keep the multipliers from converging.
 const MAX_CORRECTIONS: usize = 64;
 
 /// Whether a friction multiplier is at its bound: the contact slides.
@@ -64,7 +64,8 @@ impl CoarseCorrection {
         self.corrections_left = MAX_CORRECTIONS;
     }
 
-    /// Scales the multipliers, and y with them. Vertices that are not `touched`, if that is given, have y = y'.
+    /// Scales the multipliers, and y with them. Vertices that are not `touched`, if that is given, have y =
+    /// y'.
     pub fn apply(
         &mut self,
         system: &lcp::LcpProblem<'_>,
@@ -122,8 +123,8 @@ impl CoarseCorrection {
     }
 }
 
-/// Sum of lambda c(y) over rows, and of lambda_t . slip over the sticking ones. A row without a multiplier has no
-/// friction either.
+/// Sum of lambda c(y) over rows, and of lambda_t . slip over the sticking ones. A row without a multiplier
+/// has no friction either.
 fn slack_of_rows(system: &lcp::LcpProblem<'_>, state: &lcp::LcpState<'_>, range: Range<usize>) -> f64 {
     let (rows, friction) = (system.rows().rows, system.friction().rows);
     let mut slack = 0.0;

@@ -27,7 +27,7 @@ pub(crate) struct Cpu<'a, S, B, F> {
     pub report: StepReport,
 }
 
-impl<S: Search, B: BackwardStep, F: ForwardStep> Processor for Cpu<'_, S, B, F> {
+impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Processor for Cpu<'_, S, B, F> {
     type Error = ResolveError;
 
     /// One step of Algorithm 1 of the paper. The search keeps D^(l), and a search is due if D^(l) < D^min, or by
@@ -88,7 +88,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Processor for Cpu<'_, S, B, F> 
     }
 }
 
-impl<S: Search, B: BackwardStep, F: ForwardStep> Cpu<'_, S, B, F> {
+impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Cpu<'_, S, B, F> {
     /// The backward step, with its seconds.
     fn project(&mut self, statistics: &mut Statistics) {
         let timer = Instant::now();

@@ -32,8 +32,8 @@ pub enum ResolveError {
     TimeStep(f64),
     /// The start intersects. Only debug builds look, see [`crate::Resolver::detect_intersections`].
     #[error(
-        "{count} pairs intersect at the start, the first: {first}; the start must be free of intersections, which \
-         `Resolver::detect_intersections` tells"
+        "{count} pairs intersect at the start, the first: {first}; the start must be free of intersections, \
+         which `Resolver::detect_intersections` tells"
     )]
     StartIntersects {
         /// How many pairs intersect.
@@ -46,7 +46,8 @@ pub enum ResolveError {
     Unjudged(CheckError),
     /// A deformable vertex has no mass.
     #[error(
-        "vertex {vertex} (body {body}) has mass {mass}; masses of deformable vertices must be finite and above 0; to pin \
+        "vertex {vertex} (body {body}) has mass {mass}; masses of deformable vertices must be finite and \
+         above 0; to pin \
          a vertex, give it its mass and name it in `ResolveInput::prescribed`"
     )]
     Mass {
@@ -65,8 +66,8 @@ pub enum ResolveError {
     Params(Errors<ParamError>),
     /// More rows than indices of 32 bits can number.
     #[error(
-        "{pairs} pairs within contact range and {edges} edges: together at most {limit} are possible; use a shorter \
-         contact distance (contact.delta, contact.range) or fewer elements"
+        "{pairs} pairs within contact range and {edges} edges: together at most {limit} are possible; use a \
+         shorter contact distance (contact.delta, contact.range) or fewer elements"
     )]
     TooManyRows {
         /// Pairs within contact range.
@@ -78,9 +79,9 @@ pub enum ResolveError {
     },
     /// Coordinates so large that their rounding exceeds the minimum separation.
     #[error(
-        "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate ({coordinate:.3e} m, \
-         {what} of vertex {vertex}): if the dynamics has not diverged, move the scene closer to the origin, or raise \
-         contact.min_separation above {needed:.3e} m"
+        "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate \
+         ({coordinate:.3e} m, {what} of vertex {vertex}): if the dynamics has not diverged, move the scene \
+         closer to the origin, or raise contact.min_separation above {needed:.3e} m"
     )]
     MinSeparationBelowRounding {
         /// The minimum separation [m].

@@ -1,7 +1,7 @@
 //! The velocity filter for friction (Bridson, Fedkiw and Anderson 2002; paper, section 6.3).
 //!
 //! The target comes from dynamics without friction. Where it would bring a candidate pair closer than its
-//! desired distance, the depth estimates the normal impulse that collision handling will apply. The slip
+//! contact distance, the depth estimates the normal impulse that collision handling will apply. The slip
 //! since the start of the time step shrinks by mu times that depth, at most to zero. Collision handling takes
 //! care of the normal motion.
 //!
@@ -24,7 +24,7 @@ pub(crate) fn filter_slip(scene: &CollisionScene, state: &mut ResolveState) {
             let pair = &contacts.pairs.pairs()[p];
             let separation = &contacts.separations[p];
             let gap = predicted_gap(kind, &pair.vertices, separation, &state.x, &state.target);
-            let depth = contacts.desired[p] - gap;
+            let depth = contacts.deltas[p] - gap;
             if depth <= 0.0 {
                 continue;
             }

@@ -1,13 +1,14 @@
 //! The default forward stage.
 
 use crate::scene::CollisionScene;
+use crate::search::TrustRegionSearch;
 use crate::search::longest_path;
 use crate::stages::{Coverage, ForwardStep, Search};
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::waits::{Wait, waits};
 use bowknot_geometry::{PairKind, Separation, Vector};
-use bowknot_stepper::{Bound, StepReport, Stepper, TrustRegionRule};
+use bowknot_stepper::{Bound, StepReport, Stepper, TrustRegionRule, Tubes};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -40,7 +41,7 @@ pub struct CertifiedForward {
     swept_step_failed: bool,
 }
 
-impl ForwardStep for CertifiedForward {
+impl ForwardStep<TrustRegionSearch> for CertifiedForward {
     fn visits_ahead(&self) -> bool {
         true
     }
@@ -55,7 +56,7 @@ impl ForwardStep for CertifiedForward {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut TrustRegionSearch,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
@@ -80,7 +81,7 @@ impl CertifiedForward {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut TrustRegionSearch,
         statistics: &mut Statistics,
     ) {
         let params = &scene.params().solver.forward;
@@ -126,13 +127,14 @@ impl CertifiedForward {
     /// limited yet.
     ///
     /// In free flight no two bodies come near each other as long as all vertices go all the way. Within a
-    /// body, the slab of each pair moves along with the body: the pair cannot meet if its sides together close
-    /// less than the slab, see [`Stepper::limit_by_moving_planes`]. One pair that could meet ends the flight.
+    /// body, the slab of each pair moves along with the body: the pair cannot meet if its sides together
+    /// close less than the slab, see [`Stepper::limit_by_moving_planes`]. One pair that could meet ends the
+    /// flight.
     fn fly(
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
-        search: &mut dyn Search,
+        search: &mut TrustRegionSearch,
         statistics: &mut Statistics,
     ) -> bool {
         let params = &scene.params().solver.forward;
@@ -142,8 +144,9 @@ impl CertifiedForward {
         }
         let (stepper, damping) = (&self.stepper, params.damping);
         let displacements = stepper.displacements();
+        let tubes = Tubes { paths: displacements, radii: &[] };
         let stays_open = |kind, vertices: &[u32; 4], at: &Separation, least: f64| {
-            stepper.stays_open(kind, vertices, at, least, displacements, |_| 0.0, damping)
+            stepper.stays_open(kind, vertices, at, least, &tubes, damping)
         };
         let contacts = &state.contacts;
         for kind in PairKind::ALL {
@@ -193,7 +196,7 @@ impl CertifiedForward {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut TrustRegionSearch,
         statistics: &mut Statistics,
     ) -> bool {
         let params = &scene.params().solver.forward;
@@ -226,15 +229,15 @@ impl CertifiedForward {
         }
         for round in 1..=MAX_SWEPT_ROUNDS {
             self.assume_step_sizes();
-            let Self { stepper, paths, tubes, .. } = &*self;
-            let frozen = AtomicUsize::new(0);
+            let Self { stepper, paths, tubes: radii, .. } = &*self;
+            let (tubes, frozen) = (Tubes { paths, radii }, AtomicUsize::new(0));
             search.visit_swept(
                 scene,
                 state,
                 paths,
-                tubes,
+                radii,
                 &|kind, vertices, at, least| {
-                    if stepper.limit_by_moving_plane(kind, vertices, at, least, paths, tubes, damping) {
+                    if stepper.limit_by_moving_plane(kind, vertices, at, least, &tubes, damping) {
                         frozen.fetch_add(1, Ordering::Relaxed);
                     }
                 },
@@ -271,8 +274,8 @@ impl CertifiedForward {
         vertices.for_each(|(v, held)| *held = stepper.alpha(v) < stepper.cap(v));
     }
 
-    /// Largest distance that a vertex has left after this step although no pair holds it back, and the largest of a
-    /// prescribed vertex [m].
+    /// Largest distance that a vertex has left after this step although no pair holds it back, and the
+    /// largest of a prescribed vertex [m].
     fn unhindered(&self, state: &ResolveState) -> (f64, f64) {
         let left = |v: usize| {
             let is_held = self.held.get(v).is_some_and(|held| *held);
@@ -305,8 +308,8 @@ impl CertifiedForward {
         statistics: &mut Statistics,
     ) {
         let contacts = state.contacts.as_contacts();
-        statistics.frozen_pairs +=
-            self.stepper.limit_by_moving_planes(&contacts, &self.paths, &self.tubes, damping);
+        let tubes = Tubes { paths: &self.paths, radii: &self.tubes };
+        statistics.frozen_pairs += self.stepper.limit_by_moving_planes(&contacts, &tubes, damping);
         self.limit_bodies(scene, state);
     }
 

@@ -5,13 +5,13 @@ use crate::state::ResolveState;
 use bowknot_geometry::PairKind;
 use bowknot_proximity::separate_one;
 
-/// A bound of the kinetic energy [J] that a call adds by separating contacts to their desired distance.
+/// A bound of the kinetic energy [J] that a call adds by separating contacts to their contact distance.
 ///
-/// In a call a contact opens by at most s = desired distance - gap at the start, and the separation speed
+/// In a call a contact opens by at most s = contact distance - gap at the start, and the separation speed
 /// limits s to speed times dt. The vertices of the contact gain at most the speed s/dt along the normal, in
 /// addition to the motion of the target. A vertex of several contacts counts with the largest s. The sum of
 /// 1/2 m (s/dt)^2 over the vertices of pressing contacts bounds what a scene at rest can gain. Contacts at
-/// their desired distance add nothing.
+/// their contact distance add nothing.
 pub(crate) fn injected_energy(scene: &CollisionScene, state: &ResolveState) -> f64 {
     let Some(dt) = state.call.time_step() else { return 0.0 };
     let contacts = &state.contacts;
@@ -20,7 +20,7 @@ pub(crate) fn injected_energy(scene: &CollisionScene, state: &ResolveState) -> f
         for p in contacts.pairs.range(kind).filter(|&p| contacts.multipliers[p] > 0.0) {
             let pair = &contacts.pairs.pairs()[p];
             let at_start = separate_one(scene.model(), kind, pair, &state.start);
-            let asked = contacts.desired[p] - at_start.distance;
+            let asked = contacts.deltas[p] - at_start.distance;
             for &v in &pair.vertices[..kind.vertex_count()] {
                 growth[v as usize] = growth[v as usize].max(asked);
             }

@@ -20,14 +20,15 @@ pub struct ResolveInput<'a> {
     /// together, by the same fraction of their displacements. Every obstacle is a group of its own anyway.
     /// Empty: no groups.
     pub groups: &'a [u32],
-    /// Vertices whose contacts the target knows, one entry per vertex; empty: none. Pairs with one of them that are near
-    /// at the start of the call only get rows that guard part of their gap: the target is to decide about the rest.
+    /// Vertices whose contacts the target knows, one entry per vertex; empty: none. Pairs with one of them
+    /// that are near at the start of the call only get rows that guard part of their gap: the target is to
+    /// decide about the rest.
     pub known: &'a [bool],
-    /// What pairs carry at the start, in any order: the first backward step starts from it. Pairs without an entry carry
-    /// nothing; entries of pairs that are out of range, or without finite numbers, are left out.
+    /// What pairs carry at the start, in any order: the first backward step starts from it. Pairs without an
+    /// entry carry nothing; entries of pairs that are out of range, or without finite numbers, are left out.
     pub carried: &'a [PairMultipliers],
-    /// Edges that may be longer than their stretch limits, because prescribed vertices ask for more, and how long [m].
-    /// Entries below the limit, and of edges without one, change nothing.
+    /// Edges that may be longer than their stretch limits, because prescribed vertices ask for more, and how
+    /// long [m]. Entries below the limit, and of edges without one, change nothing.
     pub yielding: &'a [DistanceLimit],
     /// Largest number of two-way steps, if smaller than that of the parameters, for a caller that continues
     /// from any state.

@@ -1,12 +1,12 @@
 //! The rows of a backward step, with those edges only that act or could come to act.
 //!
-//! Few edges ever reach their limit. Without multipliers y is y'. So an edge is left out as long as both of its
-//! vertices have y = y0 and it is within its limit there, which is looked up once per call. A vertex is *touched*
-//! if anything may move it away from y0: a proximal weight, or a row or an edge with a multiplier. After each
-//! sweep the vertices of rows and edges that got a multiplier are touched in turn. The edges of touched vertices
-//! are *watched*: after each sweep those that are violated at y join those that are swept, with the edges next to
-//! them, and stay until the end of the step. If the last sweep leaves new ones, some more sweeps follow. So sweeps
-//! do what sweeps over all edges would do, but for the order.
+//! Few edges ever reach their limit. Without multipliers y is y'. So an edge is left out as long as both of
+//! its vertices have y = y0 and it is within its limit there, which is looked up once per call. A vertex is
+//! *touched* if anything may move it away from y0: a proximal weight, or a row or an edge with a multiplier.
+//! After each sweep the vertices of rows and edges that got a multiplier are touched in turn. The edges of
+//! touched vertices are *watched*: after each sweep those that are violated at y join those that are swept,
+//! with the edges next to them, and stay until the end of the step. If the last sweep leaves new ones, some
+//! more sweeps follow. So sweeps do what sweeps over all edges would do, but for the order.
 
 use crate::chunks::Chunks;
 use crate::index_set::IndexSet;
@@ -98,8 +98,9 @@ impl LiveEdges {
         self.acting = acting;
     }
 
-    /// Lists the watched edges that are violated at `y`; returns whether there are any. The edges next to them are
-    /// listed as well: they are swept after them, so the front of a pull moves on by two edges in a sweep.
+    /// Lists the watched edges that are violated at `y`; returns whether there are any. The edges next to
+    /// them are listed as well: they are swept after them, so the front of a pull moves on by two edges in a
+    /// sweep.
     fn look(&mut self, edges: &EdgeLimits, y: &[Vector]) -> bool {
         let before = self.list.len();
         let mut watched = std::mem::take(&mut self.watched);
@@ -167,8 +168,8 @@ fn is_violated(ball: &DistanceLimit, y: impl Fn(usize) -> Vector) -> bool {
     squared > ball.limit * ball.limit || squared.is_nan()
 }
 
-/// The rows of one backward step, linearized at x^(l), with the edges that act or could come to act. For solvers
-/// that keep to them, see [`crate::RowSolver::solve_live`].
+/// The rows of one backward step, linearized at x^(l), with the edges that act or could come to act. For
+/// solvers that keep to them, see [`crate::RowSolver::solve_live`].
 #[derive(Debug)]
 pub struct LiveRows<'a> {
     /// The scene and its parameters.
@@ -186,6 +187,8 @@ pub struct LiveRows<'a> {
 /// What [`LiveRows`] is made of, beside what every solver gets.
 #[derive(Debug)]
 pub(crate) struct LiveParts<'a> {
+    /// Inverse weights of the vertices [1].
+    pub weights: &'a [f64],
     pub edges: &'a EdgeLimits,
     pub live: &'a mut LiveEdges,
     /// Vertices whose y may differ from the target.
@@ -214,7 +217,6 @@ impl<'a> LiveRows<'a> {
     pub(crate) fn new(
         scene: &'a CollisionScene,
         state: &'a ResolveState,
-        weights: &'a [f64],
         contacts: &'a ContactRows,
         parts: LiveParts<'a>,
         y: &'a mut [Vector],
@@ -222,7 +224,7 @@ impl<'a> LiveRows<'a> {
         friction: &'a mut [TangentVector],
     ) -> Result<Self, LcpError> {
         let mut system = LcpProblem::new(
-            weights,
+            parts.weights,
             ConstraintSet::new(&contacts.rows, contacts.schedule()),
             ConstraintSet::default(),
             ConstraintSet::serial(&contacts.friction),
@@ -244,8 +246,8 @@ impl<'a> LiveRows<'a> {
         Ok(rows)
     }
 
-    /// Makes `sweeps` calls of `sweep`, which may change multipliers, and y with them; a few more if edges were
-    /// found violated in the end that were not swept before.
+    /// Makes `sweeps` calls of `sweep`, which may change multipliers, and y with them; a few more if edges
+    /// were found violated in the end that were not swept before.
     ///
     /// # Errors
     /// The first error of `sweep`.

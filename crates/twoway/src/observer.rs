@@ -22,17 +22,18 @@ pub trait Observer {
     /// Called after every forward step; `Break` ends the call with this state.
     fn accepted(&mut self, state: &AcceptedState<'_>) -> ControlFlow<()>;
 
-    /// Called after [`Self::accepted`], with what tells why the vertices that have farthest to go wait. Telling
-    /// takes about as long as the forward step, and only if it is asked for.
+    /// Called after [`Self::accepted`], with what tells why the vertices that have farthest to go wait.
+    /// Telling takes about as long as the forward step, and only if it is asked for.
     fn waiting(&mut self, _tell: &dyn Fn() -> Vec<Wait>) {}
 
-    /// Whether [`Self::accepted`] must see each state. If not, a backend may make several steps at once and call
-    /// [`Self::advanced`] in its place.
+    /// Whether [`Self::accepted`] must see each state. If not, a backend may make several steps at once and
+    /// call [`Self::advanced`] in its place.
     fn sees_each_state(&self) -> bool {
         true
     }
 
-    /// Called after so many steps whose states were not shown; `Break` ends the call with the state after them.
+    /// Called after so many steps whose states were not shown; `Break` ends the call with the state after
+    /// them.
     fn advanced(&mut self, _steps: usize) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

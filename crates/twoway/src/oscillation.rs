@@ -13,8 +13,8 @@ const DECAY: f64 = 0.8;
 /// The factors. If the wanted displacement of a vertex reverses from one step to the next, y oscillates about
 /// x: the proximal weight is too small there.
 ///
-/// A vertex that wants to go to its target y0 in both steps gets nearer to it and does not reverse. So only the
-/// vertices whose y differs from y0 in one of them need a look, and those with a factor above 1.
+/// A vertex that wants to go to its target y0 in both steps gets nearer to it and does not reverse. So only
+/// the vertices whose y differs from y0 in one of them need a look, and those with a factor above 1.
 #[derive(Debug, Default)]
 pub(crate) struct OscillationDamping {
     factors: Vec<f64>,
@@ -42,9 +42,9 @@ impl OscillationDamping {
         self.factors.get(vertex).copied().unwrap_or(1.0)
     }
 
-    /// Updates the factors after a backward step. `y` is its result; `state.y` is still that of the last step,
-    /// which started at `state.previous`. `changed` are the vertices, each once, with y or `state.y` other than
-    /// their target.
+    /// Updates the factors after a backward step. `y` is its result; `state.y` is still that of the last
+    /// step, which started at `state.previous`. `changed` are the vertices, each once, with y or `state.y`
+    /// other than their target.
     pub fn update(
         &mut self,
         scene: &CollisionScene,

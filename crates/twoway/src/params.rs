@@ -32,8 +32,8 @@ pub struct SolverParams {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BackwardParams {
-    /// Gauss-Seidel sweeps per backward step. More: a more accurate target, slower steps. A GPU makes five for
-    /// eight, and as accurate. Default 8 (paper: 1).
+    /// Gauss-Seidel sweeps per backward step. More: a more accurate target, slower steps. A GPU makes five
+    /// for eight, and as accurate. Default 8 (paper: 1).
     pub sweeps: usize,
     /// Largest number of sweeps once the remaining distance is below `polish_distance`, while the target
     /// stretches edges beyond their limits by more than half of `solver.stop.stretch_tolerance`. Default 64.
@@ -102,7 +102,8 @@ impl Params {
     }
 
     /// [`Params::fast`] that stops early, with the same guarantee: vertices that contacts hold back end
-    /// within a tenth of the mean edge length of their targets, and what then still presses is left to the next call.
+    /// within a tenth of the mean edge length of their targets, and what then still presses is left to the
+    /// next call.
     pub fn quick() -> Self {
         let mut params = Self::fast();
         params.solver.stop = StopParams::quick();

@@ -89,7 +89,7 @@ impl ProximalWeights {
             let (kind, lambda) = (contacts.pairs.kind(p), contacts.multipliers[p]);
             let (vertices, separation) = (&contacts.pairs.pairs()[p].vertices, &contacts.separations[p]);
             let origin = origin(kind, separation, vertices, &state.x);
-            let distance = separation.distance.max(contacts.desired[p]);
+            let distance = separation.distance.max(contacts.deltas[p]);
             for k in 0..kind.vertex_count() {
                 let radius = curvature_radius(origin, distance, scene.local_edge(vertices[k] as usize));
                 self.add(vertices[k], strength * lambda * separation.weights[k] / radius);

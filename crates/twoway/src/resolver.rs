@@ -2,7 +2,7 @@
 
 use crate::algorithm::Call;
 use crate::backward::LcpBackward;
-use crate::bodies::{BodyContact, HalfSpaceContact, PairFriction};
+use crate::bodies::ContactData;
 use crate::call::{CallInput, check_min_separation};
 use crate::cpu::Cpu;
 use crate::error::ResolveError;
@@ -39,11 +39,12 @@ pub struct Resolver<S = TrustRegionSearch, B = LcpBackward, F = CertifiedForward
 
 impl Resolver {
     /// A resolver for vertices with the given rest positions [m] and masses [kg]. Masses of obstacle vertices
-    /// are ignored. Rest positions determine default lengths, stretch limits, and the desired distance of
+    /// are ignored. Rest positions determine default lengths, stretch limits, and the contact distance of
     /// neighbors: they are those of the undeformed bodies, not of a draped start.
     ///
-    /// By default no edge gets longer than 1.1 times its rest length. [`BodyContact::stretch_limit`] and
-    /// `params.contact.stretch_limit` set other limits, infinity switches them off.
+    /// By default no edge gets longer than 1.1 times its rest length.
+    /// [`BodyContact::stretch_limit`](crate::BodyContact::stretch_limit) and `params.contact.stretch_limit`
+    /// set other limits, infinity switches them off.
     ///
     /// # Errors
     /// Wrong lengths, non-finite numbers, massless vertices, parameters out of range.
@@ -53,22 +54,37 @@ impl Resolver {
         masses: &[f64],
         params: Params,
     ) -> Result<Self, ResolveError> {
-        let scene = CollisionScene::new(model, rest, masses, params)?;
+        Self::with_contact(model, rest, masses, ContactData::default(), params)
+    }
+
+    /// A resolver whose bodies and half-spaces have contact data: friction, thickness, contact distance,
+    /// stretch limit.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`ResolveError::Contact`] with everything that is wrong with `contact`.
+    pub fn with_contact(
+        model: CollisionModel,
+        rest: &[Point],
+        masses: &[f64],
+        contact: ContactData,
+        params: Params,
+    ) -> Result<Self, ResolveError> {
+        let scene = CollisionScene::new(model, rest, masses, contact, params)?;
         let search = TrustRegionSearch::new(&scene);
         Ok(Self::with_stages(scene, search, LcpBackward::default(), CertifiedForward::default()))
     }
 
-    /// Changes the filters of the bodies, and the half-spaces, from the next call on, one entry per body and per
-    /// half-space of the collision model. The next call searches for all pairs.
+    /// Changes the filters of the bodies, and the half-spaces, from the next call on, one entry per body and
+    /// per half-space of the collision model. The next call searches for all pairs.
     ///
-    /// **Bodies that rest** may be made obstacles. They then have no rows and no pairs with other obstacles, and their
-    /// vertices go to their targets. Lengths, masses and edge lengths of vertices stay those of the bodies that the
-    /// resolver was made with. Two obstacles never form a pair: a body that is made an obstacle is safe from other
-    /// obstacles only as long as neither moves into the other.
+    /// **Bodies that rest** may be made obstacles. They then have no rows and no pairs with other obstacles,
+    /// and their vertices go to their targets. Lengths, masses and edge lengths of vertices stay those of the
+    /// bodies that the resolver was made with. Two obstacles never form a pair: a body that is made an
+    /// obstacle is safe from other obstacles only as long as neither moves into the other.
     ///
     /// **Obstacles and half-spaces that come and go** are [absent](BodyFilter::absent) meanwhile
-    /// ([half-spaces](HalfSpace::absent)): they meet nothing. Before one comes back the caller makes sure that it
-    /// intersects nothing, as with any start ([`Self::detect_intersections`] with the new filters).
+    /// ([half-spaces](HalfSpace::absent)): they meet nothing. Before one comes back the caller makes sure
+    /// that it intersects nothing, as with any start ([`Self::detect_intersections`] with the new filters).
     ///
     /// # Errors
     /// A wrong number of entries; a body that would be deformable although its vertices have no mass. The
@@ -85,37 +101,10 @@ impl Resolver {
     }
 }
 
-impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
+impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Resolver<S, B, F> {
     /// A resolver with other stages.
     pub fn with_stages(scene: CollisionScene, search: S, backward: B, forward: F) -> Self {
         Self { scene, state: ResolveState::default(), search, backward, forward }
-    }
-
-    /// Sets the contact data of the bodies, one entry per body of the collision model, obstacles included.
-    ///
-    /// # Errors
-    /// [`ResolveError::Contact`] with every entry out of its range, or a wrong number of entries.
-    pub fn with_bodies(mut self, bodies: Vec<BodyContact>) -> Result<Self, ResolveError> {
-        self.scene.set_bodies(bodies)?;
-        Ok(self)
-    }
-
-    /// Sets the contact data of the half-spaces, one entry per half-space of the collision model.
-    ///
-    /// # Errors
-    /// As [`Self::with_bodies`].
-    pub fn with_half_spaces(mut self, half_spaces: Vec<HalfSpaceContact>) -> Result<Self, ResolveError> {
-        self.scene.set_half_spaces(half_spaces)?;
-        Ok(self)
-    }
-
-    /// Gives pairs of bodies coefficients of friction of their own, in place of the means of both sides'.
-    ///
-    /// # Errors
-    /// As [`Self::with_bodies`]; a side that does not exist, a pair that is named twice.
-    pub fn with_pair_friction(mut self, pairs: &[PairFriction]) -> Result<Self, ResolveError> {
-        self.scene.set_pair_friction(pairs)?;
-        Ok(self)
     }
 
     /// What is fixed for the scene: model, parameters, lengths.
@@ -128,8 +117,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         &self.state
     }
 
-    /// Refuses positions [m] with coordinates so large that their rounding exceeds the smallest minimum separation, as a
-    /// call does with its start and its target.
+    /// Refuses positions [m] with coordinates so large that their rounding exceeds the smallest minimum
+    /// separation, as a call does with its start and its target.
     ///
     /// # Errors
     /// [`ResolveError::MinSeparationBelowRounding`] with the farthest vertex.
@@ -172,8 +161,9 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// and the statistics do not tell.
     ///
     /// # Errors
-    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation; more pairs than can be
-    /// numbered; in debug builds a start that intersects. The call is then refused, and `positions` are unchanged.
+    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation; more pairs
+    /// than can be numbered; in debug builds a start that intersects. The call is then refused, and
+    /// `positions` are unchanged.
     pub fn resolve(&mut self, positions: &mut [Point], target: &[Point]) -> Result<Statistics, ResolveError> {
         self.resolve_with(positions, target, &ResolveInput::default(), &mut ())
     }
@@ -252,7 +242,6 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let Self { scene, state, search, backward, .. } = self;
         search.finish(scene, state, statistics);
         backward.finish(scene, state, statistics);
-        statistics.pairs = search.candidate_count();
         self.describe_end(statistics);
     }
 

@@ -9,8 +9,8 @@ use bowknot_constraints::EdgeLimits;
 use bowknot_geometry::Vector;
 use bowknot_lcp as lcp;
 
-/// Factor on the sweeps of calls in which rows alone hold some vertices, beside a target that knows its other contacts. More:
-/// piles stand steeper, as they should. Fewer: less time.
+/// Factor on the sweeps of calls in which rows alone hold some vertices, beside a target that knows its other
+/// contacts. More: piles stand steeper, as they should. Fewer: less time.
 pub const UNKNOWN_SWEEPS: usize = 4;
 
 /// Number of sweeps between two checks of the stretch while polishing.
@@ -46,14 +46,14 @@ pub trait RowSolver: Send {
     /// The solver refuses the rows; y' is then used as the target.
     fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError>;
 
-    /// Whether the solver implements [`Self::solve_live`], which then replaces [`Self::solve`] where edges have
-    /// the ball form. Default false.
+    /// Whether the solver implements [`Self::solve_live`], which then replaces [`Self::solve`] where edges
+    /// have the ball form. Default false.
     fn keeps_to_live_edges(&self) -> bool {
         false
     }
 
-    /// The same, for the contact rows and those edges only that act or could come to act. The cost of a step is
-    /// then that of what acts.
+    /// The same, for the contact rows and those edges only that act or could come to act. The cost of a step
+    /// is then that of what acts.
     ///
     /// # Errors
     /// As [`Self::solve`].
@@ -111,8 +111,8 @@ impl RowSolver for ColoredSweeps {
     }
 }
 
-/// Makes the sweeps that the parameters ask for by calls of `batch`, and more of them while x is near to y and
-/// the edges at y are too long.
+/// Makes the sweeps that the parameters ask for by calls of `batch`, and more of them while x is near to y
+/// and the edges at y are too long.
 fn sweep_and_polish<R>(
     scene: &CollisionScene,
     state: &ResolveState,

@@ -1,11 +1,11 @@
 //! What is fixed for a scene, and every length that parameters leave to the mesh.
 
-use crate::bodies::{BodyContact, ContactTable, HalfSpaceContact, PairFriction};
+use crate::bodies::{ContactData, ContactTable};
 use crate::error::ResolveError;
 use crate::params::Params;
 use crate::spacing::{MIN_SEPARATION_MARGIN, Spacing};
 use crate::validation::{check_finite, check_length, check_rows};
-use bowknot_constraints::{DesiredDistance, Facing, Feature, FrictionModel, STRETCH_LIMIT};
+use bowknot_constraints::{DeltaRule, Facing, Feature, FrictionModel, STRETCH_LIMIT};
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{BodyFilter, HalfSpace, PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CollisionModel, Pair};
@@ -15,7 +15,7 @@ use bowknot_proximity::{CollisionModel, Pair};
 pub struct Lengths {
     /// Mean rest length of the deformable edges, h.
     pub edge: f64,
-    /// Desired distance of contacts, delta.
+    /// Contact distance of contacts, delta.
     pub delta: f64,
     /// Minimum separation, xi.
     pub min_separation: f64,
@@ -51,6 +51,7 @@ impl CollisionScene {
         model: CollisionModel,
         rest: &[Point],
         masses: &[f64],
+        contact: ContactData,
         params: Params,
     ) -> Result<Self, ResolveError> {
         params.validate().map_err(ResolveError::Params)?;
@@ -72,10 +73,11 @@ impl CollisionScene {
         let relative_masses =
             masses.iter().zip(&obstacle).map(|(m, fixed)| if *fixed { 0.0 } else { m / mean }).collect();
         let obstacle_vertices = (0..vertices as u32).filter(|&v| obstacle[v as usize]).collect();
-        let contact = ContactTable::new(&model);
+        let contact = ContactTable::new(&model, contact)?;
         let (edge, local_edges) = edge_lengths(&model, &contact, &params, rest, &obstacle);
         let lengths = lengths(&params, edge);
-        let spacing = Spacing::new(&model, &contact, &params, lengths.delta, lengths.min_separation);
+        let spacing =
+            Spacing::new(&model, &contact, params.contact.range, lengths.delta, lengths.min_separation);
         Ok(Self {
             facing: Facing::new(model.topology()),
             model,
@@ -144,7 +146,7 @@ impl CollisionScene {
         self.params.solver.stop.distance * self.lengths.edge
     }
 
-    /// Desired distances and minimum separations of the pairs.
+    /// Contact distances and minimum separations of the pairs.
     pub fn spacing(&self) -> &Spacing {
         &self.spacing
     }
@@ -171,13 +173,14 @@ impl CollisionScene {
         self.facing.is_contact(self.model.topology(), features, normal, positions, tolerance)
     }
 
-    /// How much of a contact two features are, see [`Facing::contact_share`](bowknot_constraints::Facing::contact_share).
+    /// How much of a contact two features are, see
+    /// [`Facing::contact_share`](bowknot_constraints::Facing::contact_share).
     pub fn contact_share(&self, features: [Feature; 2], normal: &Vector, positions: &[Point]) -> f64 {
         self.facing.contact_share(self.model.topology(), features, normal, positions)
     }
 
-    /// The direction in the normal cones of both `features` that is closest to `normal`, or the normal of the `rigid` side where
-    /// that is flat, see [`Facing::turned`](bowknot_constraints::Facing::turned).
+    /// The direction in the normal cones of both `features` that is closest to `normal`, or the normal of the
+    /// `rigid` side where that is flat, see [`Facing::turned`](bowknot_constraints::Facing::turned).
     pub fn turned(
         &self,
         features: [Feature; 2],
@@ -195,18 +198,18 @@ impl CollisionScene {
     }
 
     /// The distance that a pair is separated to in the end, however close it starts [m].
-    pub fn desired_distance(&self, kind: PairKind, pair: &Pair) -> f64 {
+    pub fn delta(&self, kind: PairKind, pair: &Pair) -> f64 {
         let delta = self.spacing.of(&self.model, kind, pair).delta;
-        let rule = DesiredDistance { delta, growth: f64::INFINITY };
+        let rule = DeltaRule { delta, growth: f64::INFINITY };
         rule.without_growth_limit(&self.model, kind, pair, &self.rest).0
     }
 
     /// The minimum separation of a pair in the end, however close it starts [m].
     pub fn min_separation(&self, kind: PairKind, pair: &Pair) -> f64 {
-        let desired = self.desired_distance(kind, pair);
+        let delta = self.delta(kind, pair);
         match self.spacing.of(&self.model, kind, pair).min_separation {
-            None => self.lengths.min_separation.min(0.1 * desired),
-            Some(guaranteed) => guaranteed.min(desired / MIN_SEPARATION_MARGIN),
+            None => self.lengths.min_separation.min(0.1 * delta),
+            Some(guaranteed) => guaranteed.min(delta / MIN_SEPARATION_MARGIN),
         }
     }
 
@@ -220,39 +223,12 @@ impl CollisionScene {
         if self.contact.frictional() { self.params.contact.friction_model } else { FrictionModel::None }
     }
 
-    /// Sets the contact data of the bodies, see [`crate::Resolver::with_bodies`].
-    ///
-    /// # Errors
-    /// [`ResolveError::Contact`].
-    pub fn set_bodies(&mut self, bodies: Vec<BodyContact>) -> Result<(), ResolveError> {
-        self.contact.set_bodies(bodies)?;
-        self.derive_lengths();
-        Ok(())
-    }
-
-    /// Sets the contact data of the half-spaces, see [`crate::Resolver::with_half_spaces`].
-    ///
-    /// # Errors
-    /// [`ResolveError::Contact`].
-    pub fn set_half_spaces(&mut self, half_spaces: Vec<HalfSpaceContact>) -> Result<(), ResolveError> {
-        self.contact.set_half_spaces(half_spaces)?;
-        self.derive_lengths();
-        Ok(())
-    }
-
-    /// Sets the coefficients of friction of pairs, see [`crate::Resolver::with_pair_friction`].
-    ///
-    /// # Errors
-    /// [`ResolveError::Contact`].
-    pub fn set_pair_friction(&mut self, pairs: &[PairFriction]) -> Result<(), ResolveError> {
-        self.contact.set_pairs(pairs)
-    }
-
     /// Changes the filters of bodies and the half-spaces, see [`crate::Resolver::set_filters`].
     ///
     /// # Errors
     /// [`ResolveError::Contact`] if there is another number of entries than of bodies or half-spaces;
-    /// [`ResolveError::Mass`] if a body would be deformable whose vertices have no mass. The scene is then unchanged.
+    /// [`ResolveError::Mass`] if a body would be deformable whose vertices have no mass. The scene is then
+    /// unchanged.
     pub(crate) fn set_filters(
         &mut self,
         filters: &[BodyFilter],
@@ -276,17 +252,6 @@ impl CollisionScene {
         let vertices = 0..self.rest.len() as u32;
         self.obstacle_vertices = vertices.filter(|&v| self.model.is_obstacle(v)).collect();
         Ok(())
-    }
-
-    /// Derives the lengths from the contact data.
-    fn derive_lengths(&mut self) {
-        let obstacle = obstacle_flags(&self.model);
-        let (edge, local_edges) =
-            edge_lengths(&self.model, &self.contact, &self.params, &self.rest, &obstacle);
-        self.local_edges = local_edges;
-        self.lengths = lengths(&self.params, edge);
-        let Lengths { delta, min_separation, .. } = self.lengths;
-        self.spacing = Spacing::new(&self.model, &self.contact, &self.params, delta, min_separation);
     }
 }
 

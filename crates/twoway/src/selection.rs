@@ -12,19 +12,19 @@ use std::ops::Range;
 /// step; a wide cone prevents that they come and go.
 const CONE_TOLERANCE: f64 = 0.02;
 
-/// Distance below which a pair has a row whatever its normal, in its desired distance: pressed vertices are
+/// Distance below which a pair has a row whatever its normal, in its contact distance: pressed vertices are
 /// held from all sides.
 const CLOSE: f64 = 1.001;
 
 /// Share of its distance that the row of such a pair asks for if the pair is no contact.
 ///
-/// With the desired distance instead, the row would block bodies that slide on a mesh, and push them from
+/// With the contact distance instead, the row would block bodies that slide on a mesh, and push them from
 /// behind: grains on an irregular mesh gain 17 % of their speed in a second. Without any row, the pair would
 /// stop the forward step where the target does not know of it. With a share of a half and no smallest
 /// distance, `funnel` at scale 0.2 reaches the limit of steps.
 const NON_CONTACT_SHARE: f64 = 0.9;
 
-/// Smallest distance that such a row asks for, in the desired distance of the pair. At the minimum separation
+/// Smallest distance that such a row asks for, in the contact distance of the pair. At the minimum separation
 /// the forward step closes no pair further, whatever its row allows. Without this bound, two of three
 /// variants of `funnel` reach the limit of steps.
 const MIN_NON_CONTACT_DISTANCE: f64 = 0.5;
@@ -98,10 +98,8 @@ impl<'a> Rule<'a> {
                 }
                 if self.is_in_range(kind, p) {
                     in_range += 1;
-                    let desired = self.desired(kind, p);
-                    found.extend(
-                        desired.map(|desired| Found::Selected(SelectedPair { pair: p as u32, desired })),
-                    );
+                    let delta = self.row_delta(kind, p);
+                    found.extend(delta.map(|delta| Found::Selected(SelectedPair { pair: p as u32, delta })));
                 }
             }
         }
@@ -119,22 +117,22 @@ impl<'a> Rule<'a> {
     }
 
     /// The distance that the row of a pair in range asks for [m], if it gets one.
-    fn desired(&self, kind: PairKind, p: usize) -> Option<f64> {
+    fn row_delta(&self, kind: PairKind, p: usize) -> Option<f64> {
         let (scene, state, contacts) = (self.scene, self.state, &self.state.contacts);
         let params = &scene.params().contact;
-        let (separation, largest) = (&contacts.separations[p], contacts.desired[p]);
+        let (separation, delta) = (&contacts.separations[p], contacts.deltas[p]);
         let presses = contacts.multipliers[p] > 0.0;
         let pair = &contacts.pairs.pairs()[p];
         let mut gap = f64::NEG_INFINITY;
         if self.only_active && !presses {
-            // No row asks for more than the desired distance. Most pairs are out already: tests from the
+            // No row asks for more than the contact distance. Most pairs are out already: tests from the
             // cheapest on.
             let open = separation.distance.min(separation.width.max(0.0)) - self.closing;
-            if open >= params.active * largest {
+            if open >= params.active * delta {
                 return None;
             }
             gap = predicted_gap(kind, &pair.vertices, separation, &state.x, &state.y);
-            if gap >= params.active * largest || gap.is_nan() {
+            if gap >= params.active * delta || gap.is_nan() {
                 return None;
             }
         }
@@ -143,26 +141,26 @@ impl<'a> Rule<'a> {
             scene.is_contact(features, &separation.normal, &state.x, CONE_TOLERANCE)
         };
         if is_contact {
-            return Some(self.within_reach(kind, &pair.vertices, separation, largest));
+            return Some(self.attainable_distance(kind, &pair.vertices, separation, delta));
         }
-        let is_close = separation.distance < CLOSE * largest || presses;
-        let desired =
-            (NON_CONTACT_SHARE * separation.distance).clamp(MIN_NON_CONTACT_DISTANCE * largest, largest);
-        let desired = (is_close && gap < params.active * desired).then_some(desired);
-        desired.map(|desired| self.within_reach(kind, &pair.vertices, separation, desired))
+        let is_close = separation.distance < CLOSE * delta || presses;
+        let row_delta =
+            (NON_CONTACT_SHARE * separation.distance).clamp(MIN_NON_CONTACT_DISTANCE * delta, delta);
+        let row_delta = (is_close && gap < params.active * row_delta).then_some(row_delta);
+        row_delta.map(|row_delta| self.attainable_distance(kind, &pair.vertices, separation, row_delta))
     }
 
-    /// The desired distance [m] without the deficit of prescribed vertices.
+    /// A contact distance `delta` [m] without the deficit of prescribed vertices.
     ///
-    /// Where prescribed vertices end nearer than desired, the other vertices of their side would have to make up for it.
-    /// With a closest point near a prescribed vertex they have a short lever, and would have to go far. So the deficit of
-    /// the prescribed vertices is subtracted from the desired distance.
-    fn within_reach(
+    /// Where prescribed vertices end nearer than that, the other vertices of their side would have to make up
+    /// for it. With a closest point near a prescribed vertex they have a short lever, and would have to go
+    /// far. So the deficit of the prescribed vertices is subtracted.
+    fn attainable_distance(
         &self,
         kind: PairKind,
         vertices: &[u32; 4],
         separation: &Separation,
-        desired: f64,
+        delta: f64,
     ) -> f64 {
         let state = self.state;
         let sides = [0..kind.side_a(), kind.side_a()..kind.vertex_count()];
@@ -179,8 +177,8 @@ impl<'a> Rule<'a> {
             }
             let opposite: Vector = sides[other].clone().map(|k| separation.weights[k] * place(k)).sum();
             let gap = |k: usize| sign * separation.normal.dot(&(place(k) - opposite));
-            lacking += prescribed.map(|k| separation.weights[k] * (desired - gap(k)).max(0.0)).sum::<f64>();
+            lacking += prescribed.map(|k| separation.weights[k] * (delta - gap(k)).max(0.0)).sum::<f64>();
         }
-        desired - lacking
+        delta - lacking
     }
 }

@@ -1,17 +1,16 @@
-//! Desired distances and minimum separations of pairs, from the contact data of their bodies.
+//! Contact distances and minimum separations of pairs, from the contact data of their bodies.
 
 use crate::bodies::ContactTable;
-use crate::params::Params;
 use bowknot_geometry::PairKind;
 use bowknot_proximity::{CollisionModel, Pair};
 
-/// Smallest ratio of a pair's desired distance to its minimum separation, where bodies have a thickness.
+/// Smallest ratio of a pair's contact distance to its minimum separation, where bodies have a thickness.
 /// Contacts move in the gap above the minimum separation. A step uses up at most 0.9 of it, so a small gap
 /// means small steps. The value was chosen, not tuned: a body of thickness t rests at 1.5 t where delta is
 /// smaller.
 pub const MIN_SEPARATION_MARGIN: f64 = 1.5;
 
-/// Desired distances and guaranteed minimum separations of all pairs of bodies.
+/// Contact distances and guaranteed minimum separations of all pairs of bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spacing {
     bodies: Vec<Side>,
@@ -36,13 +35,13 @@ struct Side {
     thickness: Option<f64>,
 }
 
-/// Desired distance and minimum separation of a pair.
+/// Contact distance and minimum separation of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSpacing {
-    /// Desired distance delta_p [m], before it is lowered for neighbors and for pairs that start close.
+    /// Contact distance delta_p [m], before it is lowered for neighbors and for pairs that start close.
     pub delta: f64,
     /// Guaranteed minimum separation xi_p [m] of bodies with a thickness, before it is lowered likewise.
-    /// None: that of the scene, which is no guarantee: it is lowered with the desired distance.
+    /// None: that of the scene, which is no guarantee: it is lowered with the contact distance.
     pub min_separation: Option<f64>,
 }
 
@@ -52,7 +51,7 @@ impl Spacing {
     pub(crate) fn new(
         model: &CollisionModel,
         table: &ContactTable,
-        params: &Params,
+        range: f64,
         delta: f64,
         min_separation: f64,
     ) -> Self {
@@ -73,7 +72,7 @@ impl Spacing {
             half_spaces,
             delta,
             min_separation,
-            range: params.contact.range,
+            range,
             uniform,
             margins: Vec::new(),
             largest_delta: delta,
@@ -119,7 +118,7 @@ impl Spacing {
         }
     }
 
-    /// Desired distance and minimum separation of a pair.
+    /// Contact distance and minimum separation of a pair.
     #[inline]
     pub fn of(&self, model: &CollisionModel, kind: PairKind, pair: &Pair) -> PairSpacing {
         if self.uniform {
@@ -150,12 +149,12 @@ impl Spacing {
         self.uniform
     }
 
-    /// Desired distance of a body's contacts with others like it [m].
+    /// Contact distance of a body's contacts with others like it [m].
     pub fn delta(&self, body: u32) -> f64 {
         self.bodies[body as usize].delta
     }
 
-    /// Desired distance of a body's contacts with half-spaces that have no thickness [m].
+    /// Contact distance of a body's contacts with half-spaces that have no thickness [m].
     pub fn half_space_delta(&self, body: u32) -> f64 {
         let side = &self.bodies[body as usize];
         0.5 * (side.delta + if side.own_delta { 0.0 } else { self.delta })
@@ -187,7 +186,7 @@ impl Spacing {
         if self.uniform { 0.0 } else { self.margins[body as usize].1 }
     }
 
-    /// Largest desired distance of a body with itself [m].
+    /// Largest contact distance of a body with itself [m].
     pub fn largest_delta(&self) -> f64 {
         self.largest_delta
     }

@@ -5,96 +5,20 @@ use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::stop::Residuals;
 use crate::waits::Wait;
-use bowknot_geometry::{PairKind, Separation, Vector};
-use bowknot_proximity::PairList;
 use bowknot_stepper::{StepReport, TrustRegions};
 
 /// Finds the candidate pairs that the other stages work on.
 pub trait Search: Send {
     /// Starts a call. `complete`: whether `state.contacts` must have every pair that could meet within the
-    /// trust regions. Otherwise it may lack pairs beyond contact range, and the forward stage asks for them
-    /// by [`Self::visit_ahead`].
+    /// trust regions. Otherwise it may lack pairs beyond contact range, which the forward stage asks for.
     fn begin(&mut self, scene: &CollisionScene, state: &mut ResolveState, complete: bool);
 
     /// Makes `state.contacts` valid for `state.x`: it then has every pair within contact range, or every pair
     /// that could meet, with its contact geometry.
     fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
-    /// As [`Self::update`], for a caller who knows the pairs: all that are within contact range at `state.x` are among
-    /// `near`. It need not search then.
-    fn update_among(
-        &mut self,
-        scene: &CollisionScene,
-        state: &mut ResolveState,
-        _near: &PairList,
-        statistics: &mut Statistics,
-    ) {
-        self.update(scene, state, statistics);
-    }
-
-    /// Makes trust regions hold the moves along `displacements` [m] from `state.x`, each at most
-    /// `solver.forward.trust_region_max` long, and the candidate pairs valid for them. Stages whose trust
-    /// regions do not follow displacements need nothing.
-    fn cover(
-        &mut self,
-        _scene: &CollisionScene,
-        _state: &mut ResolveState,
-        _displacements: &[Vector],
-        _statistics: &mut Statistics,
-    ) {
-    }
-
-    /// Calls `visit` with every pair that is not in `state.contacts` and could limit such moves. There is
-    /// none if `state.contacts` is complete.
-    fn visit_ahead(
-        &mut self,
-        _scene: &CollisionScene,
-        _state: &ResolveState,
-        _displacements: &[Vector],
-        _visit: &AheadVisitor<'_>,
-    ) {
-    }
-
-    /// Calls `visit` with the pairs within bodies that are not in `state.contacts` and could limit a step in
-    /// free flight along `displacements` [m] from x: one in which no body comes near another or a half-space,
-    /// and the vertices of each body move almost alike. Returns whether the step is one. It must be a function
-    /// of x and the displacements.
-    fn visit_flight(
-        &mut self,
-        _scene: &CollisionScene,
-        _state: &ResolveState,
-        _displacements: &[Vector],
-        _visit: &AheadVisitor<'_>,
-        _statistics: &mut Statistics,
-    ) -> bool {
-        false
-    }
-
-    /// Notes that all vertices will take this step from x, all the way. `largest_coordinate` is that of the
-    /// step [m].
-    fn take_flight(
-        &mut self,
-        _scene: &CollisionScene,
-        _state: &ResolveState,
-        _displacements: &[Vector],
-        _largest_coordinate: f64,
-    ) {
-    }
-
-    /// Calls `visit` with every pair that is not in `state.contacts` and could meet while the vertices move
-    /// from x along `displacements`, all at the same path time, and deviate from there by at most `deviations`
-    /// [m].
-    fn visit_swept(
-        &mut self,
-        scene: &CollisionScene,
-        state: &ResolveState,
-        displacements: &[Vector],
-        deviations: &[f64],
-        visit: &AheadVisitor<'_>,
-        statistics: &mut Statistics,
-    );
-
-    /// Makes `state.contacts` valid for `state.x` at the end of a call.
+    /// Makes `state.contacts` valid for `state.x` at the end of a call. Adds the number of candidate pairs to
+    /// the statistics.
     fn finish(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
     /// Asks for a search in the next update.
@@ -102,13 +26,7 @@ pub trait Search: Send {
 
     /// How far vertices may go with the present candidates.
     fn coverage(&self) -> Coverage<'_>;
-
-    /// Number of pairs that the last search has listed.
-    fn candidate_count(&self) -> usize;
 }
-
-/// Is called with kind, vertices, contact geometry and minimum separation [m] of a pair, by several threads.
-pub type AheadVisitor<'a> = dyn Fn(PairKind, &[u32; 4], &Separation, f64) + Sync + 'a;
 
 /// How far vertices may go before the list of candidate pairs is incomplete.
 #[derive(Clone, Copy, Debug)]
@@ -145,10 +63,10 @@ pub trait BackwardStep: Send {
     fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics);
 }
 
-/// Moves x toward y on paths without intersections.
-pub trait ForwardStep: Send {
-    /// Whether the stage asks the search for pairs beyond contact range by [`Search::visit_ahead`]. If not,
-    /// `state.contacts` has all pairs that could meet.
+/// Moves x toward y on paths without intersections, with the candidates of a search.
+pub trait ForwardStep<S: Search>: Send {
+    /// Whether the stage asks the search for pairs beyond contact range. If not, `state.contacts` has all
+    /// pairs that could meet.
     fn visits_ahead(&self) -> bool {
         false
     }
@@ -161,7 +79,7 @@ pub trait ForwardStep: Send {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut S,
         statistics: &mut Statistics,
     ) -> StepReport;
 

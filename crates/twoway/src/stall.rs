@@ -1,7 +1,7 @@
 //! Calls in which no progress is possible.
 
-/// Detects a call that stalls: prescribed vertices are blocked, and all free vertices have arrived or none moves any more.
-/// To wait for those would use up all steps of this call, and of every following one.
+/// Detects a call that stalls: prescribed vertices are blocked, and all free vertices have arrived or none
+/// moves any more. To wait for those would use up all steps of this call, and of every following one.
 #[derive(Debug)]
 pub struct StallDetector {
     /// Mean edge length [m].
@@ -36,7 +36,8 @@ impl StallDetector {
     /// Whether the call stalls, as of the state after a step. `lag` is the largest distance of a prescribed
     /// vertex to its keyframe [m], `remaining` that of a free vertex to where the step wanted to go [m]. A
     /// stage may move prescribed vertices to their keyframes by way of other positions, so where the step
-    /// wanted to go does not tell how far those have to go. `moved` is the longest move of a free vertex in the step [m].
+    /// wanted to go does not tell how far those have to go. `moved` is the longest move of a free vertex in
+    /// the step [m].
     pub fn update(&mut self, lag: f64, remaining: impl FnOnce() -> f64, moved: impl FnOnce() -> f64) -> bool {
         if self.smallest_lag.is_none_or(|smallest| lag < smallest - Self::MIN_PROGRESS * self.edge) {
             self.smallest_lag = Some(lag);

@@ -36,8 +36,8 @@ pub struct ContactSet {
     pub pairs: PairList,
     /// Contact geometry at x^(l).
     pub separations: Vec<Separation>,
-    /// Desired distance delta_p [m].
-    pub desired: Vec<f64>,
+    /// Contact distance delta_p [m].
+    pub deltas: Vec<f64>,
     /// Minimum separation xi_p [m].
     pub min_separations: Vec<f64>,
     /// Multiplier lambda_p of the pair's contact row [m, in units of relative mass].

@@ -29,7 +29,7 @@ pub struct Statistics {
     pub active_rows: usize,
     /// Pairs frozen because no direction certifies their gap, over all steps.
     pub frozen_pairs: usize,
-    /// Pairs whose desired distance was lowered because they are neighbors in a fine mesh.
+    /// Pairs whose contact distance was lowered because they are neighbors in a fine mesh.
     pub lowered_pairs: usize,
     /// Colors of the edge rows.
     pub edge_colors: usize,
@@ -62,15 +62,15 @@ pub struct Statistics {
     /// Obstacles and pinned vertices that lag behind their keyframes by more than `solver.stop.distance`,
     /// because going on would cut through something or because the steps were used up.
     pub lags: Vec<Lag>,
-    /// Bound of the kinetic energy that separating contacts to their desired distance has injected [J]: the
+    /// Bound of the kinetic energy that separating contacts to their contact distance has injected [J]: the
     /// sum over vertices of 1/2 m (s/dt)^2, where s is the largest growth of a gap that a pressing contact of
     /// the vertex asks for in this call, at most the separation speed times dt. 0 for a call without a time
     /// step.
     pub injected_j: f64,
     /// Body of the vertex with the largest remaining distance, if the call did not converge.
     pub slowest_body: Option<u32>,
-    /// What held back the vertices that had farthest to go in the last step, if the call took 32 steps or more, or did
-    /// not converge, unless [`crate::ResolveInput::max_steps`] cut it short.
+    /// What held back the vertices that had farthest to go in the last step, if the call took 32 steps or
+    /// more, or did not converge, unless [`crate::ResolveInput::max_steps`] cut it short.
     #[serde(default)]
     pub waits: Vec<Wait>,
     /// Wall seconds by stage.

@@ -45,11 +45,10 @@ pub enum StopRule {
         /// Rule `clock`: largest remaining fraction r of any vertex, the paper's epsilon. Default 1e-4.
         remaining_fraction: f64,
     },
-    /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`; those that no pair holds back within 0.01 mean
-    /// edge lengths, prescribed ones among them exactly; the stretch limits hold; and both residuals are small. Small
-    /// residuals
-    /// are needed because the proximal term may still hold back a motion that is common to a body. Where no
-    /// contact presses, up to two more steps reach the target to the bit.
+    /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`; those that no pair holds back within
+    /// 0.01 mean edge lengths, prescribed ones among them exactly; the stretch limits hold; and both
+    /// residuals are small. Small residuals are needed because the proximal term may still hold back a motion
+    /// that is common to a body. Where no contact presses, up to two more steps reach the target to the bit.
     Travel {
         /// Rule `travel`: largest net residual, in mean edge lengths: how far a body as a whole is from where
         /// the forces on it balance. 0 is never reached. Default 0.2.
@@ -94,8 +93,8 @@ impl StopRule {
 }
 
 impl StopParams {
-    /// Those of [`crate::Params::quick`]: a call ends as soon as all vertices are near their targets. The residuals are
-    /// so loose that they rarely take another step.
+    /// Those of [`crate::Params::quick`]: a call ends as soon as all vertices are near their targets. The
+    /// residuals are so loose that they rarely take another step.
     pub fn quick() -> Self {
         let rule = StopRule::Travel { net_residual: 1.0, residual: Some(1.0) };
         Self { rule, distance: 0.1, ..Self::default() }
@@ -236,7 +235,8 @@ impl StopTest {
         }
     }
 
-    /// What the rule [`StopRule::Travel`] compares with, for a backend that decides by itself; none with another rule.
+    /// What the rule [`StopRule::Travel`] compares with, for a backend that decides by itself; none with
+    /// another rule.
     pub fn travel_limits(&self) -> Option<TravelLimits> {
         match self.params.rule {
             StopRule::Travel { net_residual, residual } => {

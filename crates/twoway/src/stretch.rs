@@ -10,8 +10,8 @@ const CHUNK: usize = 4096;
 /// Ratios to both references; none where no edge has a length.
 type Ratios = [Option<f64>; 2];
 
-/// Largest ratios of the length of a deformable body's edge at `end` to its lengths in two `references`; 1 where
-/// no edge has a length.
+/// Largest ratios of the length of a deformable body's edge at `end` to its lengths in two `references`; 1
+/// where no edge has a length.
 pub fn max_stretch(scene: &CollisionScene, references: [&[Point]; 2], end: &[Point]) -> [f64; 2] {
     let model = scene.model();
     let ratios = |&[a, b]: &[u32; 2]| -> Ratios {

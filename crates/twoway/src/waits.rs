@@ -60,9 +60,9 @@ pub struct WaitPair {
     pub gap_m: f64,
 }
 
-/// The vertices that have farthest to go after a step, one for each two bodies, farthest first. The stepper has made the
-/// step from `state.previous`, limited by `state.contacts` among others. `held` tells which vertices pairs hold back; it
-/// may be empty.
+/// The vertices that have farthest to go after a step, one for each two bodies, farthest first. The stepper
+/// has made the step from `state.previous`, limited by `state.contacts` among others. `held` tells which
+/// vertices pairs hold back; it may be empty.
 pub(crate) fn waits(
     scene: &CollisionScene,
     state: &ResolveState,
@@ -121,7 +121,8 @@ struct Stop {
     frozen: bool,
 }
 
-/// The first pair in range that allows the entities of some vertices no more than the step that they took, to the bit.
+/// The first pair in range that allows the entities of some vertices no more than the step that they took, to
+/// the bit.
 fn stops(
     scene: &CollisionScene,
     state: &ResolveState,

@@ -71,7 +71,8 @@ fn scene() -> (Vec<Point>, CollisionModel) {
     (x, CollisionModel::new(topology, bodies, filters, vec![ground]).unwrap())
 }
 
-/// Allocations between the first and the last accepted state of the second of two equal calls toward `target`.
+/// Allocations between the first and the last accepted state of the second of two equal calls toward
+/// `target`.
 fn allocations(target: impl Fn(&Point) -> Point) -> (usize, Statistics) {
     let (start, model) = scene();
     let mut params = Params::fast();

@@ -86,7 +86,8 @@ fn all_steps(root: &Path) -> Vec<Step> {
         steps.push(Step::new("fuzz targets", fuzz_targets(root)));
     } else {
         println!(
-            "==> fuzz targets: skipped, because there is no nightly compiler: rustup toolchain install nightly"
+            "==> fuzz targets: skipped, because there is no nightly compiler: rustup toolchain install \
+             nightly"
         );
     }
     steps.push(Step::new("build tests", cargo(root, "test --release --workspace --no-run")));
@@ -105,7 +106,8 @@ fn all_steps(root: &Path) -> Vec<Step> {
         steps.push(Step { run: readers::run, ..Step::new("read exports", read) });
     } else {
         println!(
-            "==> read exports: skipped, because Python 3.11 with venv is missing: apt-get install python3-venv"
+            "==> read exports: skipped, because Python 3.11 with venv is missing: apt-get install \
+             python3-venv"
         );
     }
     steps.push(Step::new("tests", cargo(root, "test --release --workspace")));

@@ -1,7 +1,8 @@
 //! `cargo xtask faults`: what runs and readers meet in the world, for longer than CI has time.
 //!
-//! The tests are those of CI, told by variables to try more: `crates/cli/tests/command/kills.rs` kills runs at random
-//! moments, `faults.rs` beside it damages checkpoints and fills disks, `tests/tests/fuzz_files` damages files.
+//! The tests are those of CI, told by variables to try more: `crates/cli/tests/command/kills.rs` kills runs
+//! at random moments, `faults.rs` beside it damages checkpoints and fills disks, `tests/tests/fuzz_files`
+//! damages files.
 
 use crate::workspace::cargo;
 use std::path::Path;

@@ -32,35 +32,56 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 Usage: cargo xtask check [--fast]
        cargo xtask miri [CRATE..]
-       cargo xtask faults [--kills N] [--seeds N]
+       cargo xtask faults [--kills N] \
+[--seeds N]
        cargo xtask pictures [SCENE..]
        cargo xtask hashes [--scenes A,B] [--jobs N]
-       cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
-       cargo xtask soak --replay SEED [--generated]
+       \
+cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
+       cargo xtask soak --replay SEED \
+[--generated]
        cargo xtask mutations [NAME..]
 
-check     run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests; the fuzz targets if there
-          is a nightly compiler, `cargo deny` if it is installed
-          --fast        format, clippy and unit tests only
-miri      run unit tests of geometry, lcp and stepper, or of the crates named, under Miri, which finds undefined
+check     run what CI runs, in named steps: format, \
+clippy, docs, wasm, a small run, its exports read back, tests; the fuzz targets if there
+          is a \
+nightly compiler, `cargo deny` if it is installed
+          --fast        format, clippy and unit tests \
+only
+miri      run unit tests of geometry, lcp and stepper, or of the crates named, under Miri, which finds \
+undefined
           behavior; needs the nightly toolchain with the components miri and rust-src
-faults    kill runs at random moments and resume them, damage checkpoints, files and folders, fill a disk: the tests of CI,
+faults    \
+kill runs at random moments and resume them, damage checkpoints, files and folders, fill a disk: the tests \
+of CI,
           for longer
           --kills N     kills [default: 200; CI: 5]
-          --seeds N     inputs of the readers, in halves of what CI tries [default: 20]
-pictures  run built-in scenes, all or those named, and draw them into assets/pictures; needs a graphics driver
-hashes    run built-in scenes at a small scale on one thread each, and print for each its name, the number of its frames
-          and a hash of all bytes of the frames: compare the lines before and after a change that is to leave every
-          result as it is, on the same machine
+          --seeds N     \
+inputs of the readers, in halves of what CI tries [default: 20]
+pictures  run built-in scenes, all or those \
+named, and draw them into assets/pictures; needs a graphics driver
+hashes    run built-in scenes at a small \
+scale on one thread each, and print for each its name, the number of its frames
+          and a hash of all \
+bytes of the frames: compare the lines before and after a change that is to leave every
+          result as \
+it is, on the same machine
           --scenes A,B  these scenes only
-          --jobs N      run N scenes at the same time [default: as many as there are cores]
-soak      draw collision problems and judge each accepted step; a failure ends it with the smallest case and its seed
-          --minutes N   how long [default: 10]
+          --jobs N      run N scenes at \
+the same time [default: as many as there are cores]
+soak      draw collision problems and judge each \
+accepted step; a failure ends it with the smallest case and its seed
+          --minutes N   how long \
+[default: 10]
           --seed S      seed of all problems [default: from the clock]
-          --jobs J      number of problems at a time, on a thread each [default: 1]
-          --generated   large generated states only, instead of mostly small pieces
-          --replay SEED draw, check and shrink one problem again
-mutations make the mistakes of tests/safety/mutations, all or those named, one at a time in a copy of the workspace, and
+          --jobs J      \
+number of problems at a time, on a thread each [default: 1]
+          --generated   large generated states \
+only, instead of mostly small pieces
+          --replay SEED draw, check and shrink one problem \
+again
+mutations make the mistakes of tests/safety/mutations, all or those named, one at a time in a copy of \
+the workspace, and
           require that the safety tests catch each; some minutes per mutation";
 
 fn main() -> ExitCode {

@@ -1,8 +1,8 @@
 //! `cargo xtask miri`: unit tests under Miri.
 //!
-//! Miri interprets programs and finds undefined behavior: reads out of bounds, broken aliasing, data races. It is
-//! hundreds of times slower than a release build, so only unit tests of crates with `unsafe` of their own, and of
-//! those that index the most, run under it.
+//! Miri interprets programs and finds undefined behavior: reads out of bounds, broken aliasing, data races.
+//! It is hundreds of times slower than a release build, so only unit tests of crates with `unsafe` of their
+//! own, and of those that index the most, run under it.
 
 use crate::nightly;
 use std::path::Path;
@@ -18,7 +18,8 @@ pub fn run(root: &Path, crates: &[&str]) -> ExitCode {
         Ok(status) if status.success() => ExitCode::SUCCESS,
         Ok(_) => {
             eprintln!(
-                "Miri failed. If it is missing: rustup toolchain install nightly --component miri --component rust-src"
+                "Miri failed. If it is missing: rustup toolchain install nightly --component miri \
+                 --component rust-src"
             );
             ExitCode::FAILURE
         }

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Nightly's cargo in the workspace's root. Through rustup: within `cargo xtask` the variable CARGO names the pinned
-/// compiler's cargo, which knows no `+`.
+/// Nightly's cargo in the workspace's root. Through rustup: within `cargo xtask` the variable CARGO names the
+/// pinned compiler's cargo, which knows no `+`.
 pub fn cargo(root: &Path) -> Command {
     let mut command = Command::new("rustup");
     command.current_dir(root).args(["run", "nightly", "cargo"]);

@@ -162,7 +162,8 @@ fn work(
 fn print(total: &Tally, start: Instant) {
     let Tally { cases, unusable, refused, moved, steps } = total;
     println!(
-        "{:.0} s: {cases} cases ({unusable} intersect at the start, {refused} refused), {moved} moved, {steps} accepted steps judged",
+        "{:.0} s: {cases} cases ({unusable} intersect at the start, {refused} refused), {moved} moved, \
+         {steps} accepted steps judged",
         start.elapsed().as_secs_f64()
     );
 }

@@ -1,7 +1,7 @@
 //! Any number of problems from a seed, each of which can be drawn again by its own seed.
 //!
-//! A seed draws another problem as soon as the strategies change. So the smallest case of a failure is kept as
-//! a test of its own, named by its symptom, and not its seed.
+//! A seed draws another problem as soon as the strategies change. So the smallest case of a failure is kept
+//! as a test of its own, named by its symptom, and not its seed.
 
 use crate::{Random, Scenario, Tally};
 use proptest::strategy::Strategy;

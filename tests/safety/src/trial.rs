@@ -14,8 +14,8 @@ use bowknot_check::{Judge, StateOptions};
 use bowknot_geometry::{CollisionModel, Point};
 use bowknot_proximity::BodyFilter;
 use bowknot_twoway::{
-    AcceptedState, BackwardStep, CertifiedForward, CollisionScene, ForwardStep, LcpBackward, ResolveError,
-    ResolveInput, Resolver, Search, TrustRegionSearch,
+    AcceptedState, BackwardStep, CertifiedForward, CollisionScene, ContactData, ForwardStep, LcpBackward,
+    ResolveError, ResolveInput, Resolver, Search, TrustRegionSearch,
 };
 use std::ops::ControlFlow;
 
@@ -72,7 +72,7 @@ pub fn check(scenario: &Scenario) -> Result<Tally, String> {
 ///
 /// # Errors
 /// The first fault of a step.
-pub fn check_with<S: Search, B: BackwardStep, F: ForwardStep>(
+pub fn check_with<S: Search, B: BackwardStep, F: ForwardStep<S>>(
     scenario: &Scenario,
     judged: Judged,
     stages: impl Fn(CollisionScene) -> Result<Resolver<S, B, F>, ResolveError>,
@@ -90,13 +90,12 @@ pub fn check_with<S: Search, B: BackwardStep, F: ForwardStep>(
         .fold(4.0 * case.positions.iter().map(|p| p.coords.amax()).fold(0.0, f64::max) / scale, |a, b| a + b);
     let setup = scenario.setup.raised(largest);
     let params = setup.params(scale);
-    let resolver = CollisionScene::new(case.model.clone(), &rest, &masses, params)
-        .and_then(&stages)
-        .and_then(|resolver| resolver.with_bodies(vec![setup.body(scale); case.model.bodies().len()]))
-        .and_then(|resolver| {
-            let planes = case.model.half_spaces().len();
-            resolver.with_half_spaces(vec![setup.half_space(scale); planes])
-        });
+    let contact = ContactData {
+        bodies: vec![setup.body(scale); case.model.bodies().len()],
+        half_spaces: vec![setup.half_space(scale); case.model.half_spaces().len()],
+        ..ContactData::default()
+    };
+    let resolver = CollisionScene::new(case.model.clone(), &rest, &masses, contact, params).and_then(&stages);
     let mut resolver = resolver.map_err(|error| format!("refused: {error}"))?;
 
     let (pinned, groups) = scenario.pins(&case);

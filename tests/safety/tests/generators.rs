@@ -31,7 +31,8 @@ fn states_are_clear_but_nearly_intersecting() {
 fn most_targets_lead_through_other_elements() {
     let (mut cases, mut crossings) = (0, 0);
     for generator in GENERATORS {
-        // To one point or into one plane everything leads through something, and the judge takes a minute to say so.
+        // To one point or into one plane everything leads through something, and the judge takes a minute to
+        // say so.
         let rules = Rule::ALL.into_iter().filter(|rule| !matches!(rule, Rule::Collapsed | Rule::Flattened));
         for rule in rules {
             let case = generator(1);

@@ -47,8 +47,8 @@ fn at(x: f64, y: f64, z: f64) -> Point {
 
 const SQUARE: [Vector; 2] = [Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)];
 
-/// They are far apart when pairs are searched for, and come so near in a flight that the next step, within the
-/// trust regions, could take them through each other.
+/// They are far apart when pairs are searched for, and come so near in a flight that the next step, within
+/// the trust regions, could take them through each other.
 #[test]
 fn sheets_that_a_flight_has_brought_together_do_not_pass() {
     for gap in [0.02, 0.04, 0.08, 0.12] {
@@ -65,8 +65,8 @@ fn sheets_that_a_flight_has_brought_together_do_not_pass() {
     }
 }
 
-/// A plate moves along x by `way`, a smaller one follows it at the distance `gap`, and a third, at `wall`, stops the
-/// first but is not in the way of the second.
+/// A plate moves along x by `way`, a smaller one follows it at the distance `gap`, and a third, at `wall`,
+/// stops the first but is not in the way of the second.
 fn convoy(way: f64, wall: f64, gap: f64) {
     let plate = |x: f64, [y, z]: [[f64; 2]; 2]| {
         (at(x, y[0], z[0]), [Vector::y() * (y[1] - y[0]), Vector::z() * (z[1] - z[0])])
@@ -80,8 +80,8 @@ fn convoy(way: f64, wall: f64, gap: f64) {
     follow(&case, &[&moves, &moves]);
 }
 
-/// The search along the assumed paths does not see the followers, because they move alike: they are safe only as
-/// long as both stay in their tubes.
+/// The search along the assumed paths does not see the followers, because they move alike: they are safe only
+/// as long as both stay in their tubes.
 #[test]
 fn plates_that_follow_one_another_stop_when_the_first_is_stopped() {
     for gap in [0.3, 0.5, 0.7] {
@@ -91,8 +91,8 @@ fn plates_that_follow_one_another_stop_when_the_first_is_stopped() {
     }
 }
 
-/// The first plate ends within its tube, and the follower is so near that it meets it there: the search must take the
-/// tubes into account.
+/// The first plate ends within its tube, and the follower is so near that it meets it there: the search must
+/// take the tubes into account.
 #[test]
 fn plates_that_follow_closely_do_not_pass_one_that_lags_within_its_tube() {
     for gap in [0.02, 0.05, 0.08] {

@@ -55,8 +55,8 @@ fn nearly_parallel_edges_that_do_not_touch_are_not_taken_for_a_hit() {
     assert!(checked.as_ref().is_ok_and(|tally| tally.steps == 8), "{checked:?}");
 }
 
-/// An obstacle stopped between two swept searches. The tree of those that move was built anew without it and kept
-/// its boxes, so that the search panicked.
+/// An obstacle stopped between two swept searches. The tree of those that move was built anew without it and
+/// kept its boxes, so that the search panicked.
 #[test]
 fn an_obstacle_that_stops_between_swept_steps_leaves_no_boxes_behind() {
     let shape =
@@ -91,7 +91,8 @@ fn an_obstacle_that_stops_between_swept_steps_leaves_no_boxes_behind() {
     assert!(checked.as_ref().is_ok_and(|tally| tally.moved == 1), "{checked:?}");
 }
 
-/// The judge took an edge that slides off the side of a much longer one, 4e-12 m from it, for a hit. The step was safe.
+/// The judge took an edge that slides off the side of a much longer one, 4e-12 m from it, for a hit. The step
+/// was safe.
 #[test]
 fn an_edge_that_slides_off_a_long_one_is_not_taken_for_a_hit() {
     let strand = Shape::Strands { count: 1, vertices: 3, spacing: 1.0 };

@@ -110,8 +110,8 @@ impl Surface {
         Self { points: (0..8).map(corner).collect(), elements: faces.map(|face| ('f', face)).collect() }
     }
 
-    /// Triangles of a micrometer on a square lattice in the plane z = 0: points, since scenes take no obstacle
-    /// without triangles or strands.
+    /// Triangles of a micrometer on a square lattice in the plane z = 0: points, since scenes take no
+    /// obstacle without triangles or strands.
     pub fn points(count: usize, spacing: f64) -> Self {
         const SIZE: f64 = 1e-6;
         let mut surface = Self::default();

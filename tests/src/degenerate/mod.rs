@@ -1,6 +1,6 @@
-//! Scenes of degenerate contacts, after the tests of Erleben (2018) that Li et al. (2020) collect: solids with
-//! sharp tips and edges that fall on tips, edges, steps and notches; and sheets a micrometer apart, closed
-//! meshes inside each other, needles and points as obstacles.
+//! Scenes of degenerate contacts, after the tests of Erleben (2018) that Li et al. (2020) collect: solids
+//! with sharp tips and edges that fall on tips, edges, steps and notches; and sheets a micrometer apart,
+//! closed meshes inside each other, needles and points as obstacles.
 //!
 //! K. Erleben, *Methodology for Assessing Mesh-Based Contact Point Methods*, ACM TOG 37(3), 2018. All meshes
 //! are made here.
@@ -52,7 +52,8 @@ pub fn scenes() -> Vec<Degenerate> {
 fn solid(mesh: &str, place: [f64; 3], more: &str) -> String {
     format!(
         "[[body]]\nkind = \"solid\"\nmesh = \"{mesh}\"\ntranslate = {place:?}\nvelocity = [0.0, 0.0, -2.0]\n\
-         material = {{ base = \"jelly\", young_modulus = 1e5, poisson_ratio = 0.4, density = 1000 }}\n{more}\n"
+         material = {{ base = \"jelly\", young_modulus = 1e5, poisson_ratio = 0.4, density = 1000 \
+         }}\n{more}\n"
     )
 }
 
@@ -60,7 +61,8 @@ fn cube(place: [f64; 3], more: &str) -> String {
     format!(
         "[[body]]\nkind = \"solid\"\nshape = {{ type = \"block\", size = [0.5, 0.5, 0.5], edge = 0.25 }}\n\
          translate = {place:?}\nvelocity = [0.0, 0.0, -2.0]\n\
-         material = {{ base = \"jelly\", young_modulus = 1e5, poisson_ratio = 0.4, density = 1000 }}\n{more}\n"
+         material = {{ base = \"jelly\", young_modulus = 1e5, poisson_ratio = 0.4, density = 1000 \
+         }}\n{more}\n"
     )
 }
 
@@ -83,12 +85,15 @@ fn on_obstacles() -> Vec<Degenerate> {
         scene("spike on spike", [spike(), obstacle("spike.t", UPSIDE_DOWN)]),
         scene("spike on wedge", [spike(), obstacle("wedge.t", UPSIDE_DOWN)]),
         scene("spike in crack", [solid("spike.t", [0.0, 0.0, -0.2], ""), obstacle("crack.obj", "")]),
-        scene("spike in hole", [
-            solid("spike.t", [0.0, 0.0, -0.1], ""),
-            "[[obstacle]]\nshape = { type = \"lathe\", edge = 0.1, profile = [[0.1, -0.3], [0.6, -0.3], [0.6, 0.0], \
-             [0.1, 0.0]] }\n"
-                .to_owned(),
-        ]),
+        scene(
+            "spike in hole",
+            [
+                solid("spike.t", [0.0, 0.0, -0.1], ""),
+                "[[obstacle]]\nshape = \
+             { type = \"lathe\", edge = 0.1, profile = [[0.1, -0.3], [0.6, -0.3], [0.6, 0.0], [0.1, 0.0]] }\n"
+                    .to_owned(),
+            ],
+        ),
         scene("wedge on plane", [wedge(), plane()]),
         scene("wedge on wedge along", [wedge(), obstacle("wedge.t", UPSIDE_DOWN)]),
         scene("wedge on wedge across", [wedge(), obstacle("wedge.t", "rotate = [180.0, 0.0, 90.0]")]),
@@ -116,12 +121,14 @@ fn on_obstacles() -> Vec<Degenerate> {
 fn of_sheets() -> Vec<Degenerate> {
     let sheet = |z: f64| {
         format!(
-            "[[body]]\nshape = {{ type = \"sheet\", size = [0.2, 0.2], edge = 0.05 }}\ntranslate = [0.0, 0.0, {z:?}]\n\
+            "[[body]]\nshape = {{ type = \"sheet\", size = [0.2, 0.2], edge = 0.05 }}\ntranslate = [0.0, \
+             0.0, {z:?}]\n\
              velocity = [0.0, 0.0, {:?}]\nmaterial = {{ base = \"cotton\", thickness = 1e-7 }}\n",
             if z > 0.0 { -1.0 } else { 1.0 }
         )
     };
-    let ball = "[[obstacle]]\nshape = { type = \"ball\", radius = 0.05, edge = 0.02 }\ntranslate = [0.0, 0.0, -0.0501]\n";
+    let ball = "[[obstacle]]\nshape = { type = \"ball\", radius = 0.05, edge = 0.02 }\ntranslate = [0.0, \
+                0.0, -0.0501]\n";
     let layers = |gap: f64| (1..4).map(|k| sheet(gap * f64::from(k))).collect::<String>() + ball;
     let closed = |size: f64, velocity: f64| {
         format!(

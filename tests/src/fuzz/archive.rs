@@ -1,4 +1,5 @@
-//! No archive makes a reader panic: collision problems, stacks of frames and checkpoints whose arrays are damaged.
+//! No archive makes a reader panic: collision problems, stacks of frames and checkpoints whose arrays are
+//! damaged.
 
 use super::parts::split;
 use super::read_mesh::check_archive;
@@ -60,8 +61,9 @@ const NAMES: [&str; 43] = [
     "yielding_edges",
 ];
 
-/// Reads the parts of the input as arrays, header included, of an archive whose sums are right. The first byte
-/// chooses whether they are deflated. A bare archive would be refused at its sums, whatever its arrays hold.
+/// Reads the parts of the input as arrays, header included, of an archive whose sums are right. The first
+/// byte chooses whether they are deflated. A bare archive would be refused at its sums, whatever its arrays
+/// hold.
 pub fn arrays(data: &[u8]) -> bool {
     let Some((&method, data)) = data.split_first() else { return false };
     let Ok(folder) = tempfile::tempdir() else { return false };
@@ -99,7 +101,8 @@ pub fn arrays_of(archive: &[u8]) -> Vec<u8> {
     [vec![0], super::parts::join(&parts)].concat()
 }
 
-/// A sheet above the ground, pinned on a side from a later time on, and a ball: checkpoints of it have every array.
+/// A sheet above the ground, pinned on a side from a later time on, and a ball: checkpoints of it have every
+/// array.
 const SCENE: &str = r#"
     [simulation]
     frames = 2
@@ -139,8 +142,8 @@ pub fn sound_checkpoint() -> Checkpoint {
     checkpoint
 }
 
-/// Reads a checkpoint: the bytes as they are, or as arrays of a sound archive. What is read must be refused by a
-/// simulation of another size, or be resumed and stepped.
+/// Reads a checkpoint: the bytes as they are, or as arrays of a sound archive. What is read must be refused
+/// by a simulation of another size, or be resumed and stepped.
 pub fn checkpoint(data: &[u8]) -> bool {
     let Some((&choice, data)) = data.split_first() else { return false };
     let Ok(folder) = tempfile::tempdir() else { return false };

@@ -1,10 +1,10 @@
 //! Bodies of the fuzz targets: properties that hold for any bytes.
 //!
 //! `tests/fuzz` runs them with libFuzzer, which mutates bytes by code coverage. The tests `fuzz_bodies` and
-//! `fuzz_files` run them with seeded random bytes and with damaged files ([`mutate`]), so that they are tested without
-//! a fuzzer; `fuzz_files` measures memory as well. Each function panics if its
-//! property is violated. It returns whether the bytes led to the check of the property: those of a mesh that
-//! intersects at the start, or of a broken file, do not.
+//! `fuzz_files` run them with seeded random bytes and with damaged files ([`mutate`]), so that they are
+//! tested without a fuzzer; `fuzz_files` measures memory as well. Each function panics if its property is
+//! violated. It returns whether the bytes led to the check of the property: those of a mesh that intersects
+//! at the start, or of a broken file, do not.
 
 mod archive;
 mod draw;

@@ -39,8 +39,8 @@ const TEXT: &[u8] = b"0123456789-+.eE \n#/\"[]={},'()\t";
 const WORDS: [u64; 10] =
     [0, 1, 0x7f, 0xffff, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 1 << 40, 0x7fff_ffff_ffff_ffff, u64::MAX];
 
-/// Changes a file in one to four ways: flips bits, overwrites bytes, numbers and words, cuts, repeats and removes
-/// pieces, and takes pieces of `other`. `below(n)` draws a number below n.
+/// Changes a file in one to four ways: flips bits, overwrites bytes, numbers and words, cuts, repeats and
+/// removes pieces, and takes pieces of `other`. `below(n)` draws a number below n.
 pub fn mutate(file: &[u8], other: &[u8], below: &mut dyn FnMut(usize) -> usize) -> Vec<u8> {
     let mut bytes = file.to_vec();
     for _ in 0..1 + below(4) {

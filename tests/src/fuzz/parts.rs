@@ -1,7 +1,8 @@
 //! Several files in the bytes of one fuzz input.
 //!
-//! Each part is a byte that chooses a name, two bytes of length, and that many bytes of content; less at the end. A
-//! mutation of the input is a mutation of some file, and a wrong length shifts the rest, which a fuzzer gets over.
+//! Each part is a byte that chooses a name, two bytes of length, and that many bytes of content; less at the
+//! end. A mutation of the input is a mutation of some file, and a wrong length shifts the rest, which a
+//! fuzzer gets over.
 
 /// Splits an input into parts: choice and content.
 pub fn split(mut data: &[u8]) -> Vec<(u8, &[u8])> {

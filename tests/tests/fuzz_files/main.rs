@@ -1,9 +1,9 @@
-//! Damaged files of every kind are read or refused: without a panic, in time, and with memory that their sizes
-//! justify. The bodies are those of the fuzz targets in `tests/fuzz`.
+//! Damaged files of every kind are read or refused: without a panic, in time, and with memory that their
+//! sizes justify. The bodies are those of the fuzz targets in `tests/fuzz`.
 //!
-//! `BOWKNOT_SEEDS=200 cargo test --release -p bowknot-tests --test fuzz_files` tries a hundred times as many inputs as
-//! CI does. An input that takes too much time or memory, or panics, is written to the temporary folder, and its path
-//! is printed.
+//! `BOWKNOT_SEEDS=200 cargo test --release -p bowknot-tests --test fuzz_files` tries a hundred times as many
+//! inputs as CI does. An input that takes too much time or memory, or panics, is written to the temporary
+//! folder, and its path is printed.
 //!
 //! The tests have a binary of their own, because they replace the allocator.
 // Counts, and the paths of inputs to look at, are for people.
@@ -22,10 +22,11 @@ use std::time::{Duration, Instant};
 #[global_allocator]
 static GLOBAL: Counting = Counting;
 
-/// Memory that reading needs however small the file [bytes]: tables, simulators of small scenes, pages of reports.
+/// Memory that reading needs however small the file [bytes]: tables, simulators of small scenes, pages of
+/// reports.
 const BASE: usize = 24 << 20;
-/// Memory per byte of a file [bytes]. The largest honest need is that of text whose every few bytes are a vertex of a
-/// mesh, which is then judged.
+/// Memory per byte of a file [bytes]. The largest honest need is that of text whose every few bytes are a
+/// vertex of a mesh, which is then judged.
 const PER_BYTE: usize = 1500;
 /// Time for one input [s], on a machine that does other work too.
 const SECONDS: u64 = 20;
@@ -68,8 +69,8 @@ fn limited(name: &str, body: fn(&[u8]) -> bool, data: &[u8]) -> bool {
     taken
 }
 
-/// Runs a body on sound files, which it must take, and on `count` damaged ones, some of which it must take and some
-/// refuse.
+/// Runs a body on sound files, which it must take, and on `count` damaged ones, some of which it must take
+/// and some refuse.
 fn damage(name: &str, body: fn(&[u8]) -> bool, sound: &[Vec<u8>], prefix: usize, count: usize) {
     let _one = alone();
     for (index, file) in sound.iter().enumerate() {

@@ -56,8 +56,8 @@ struct Trial {
 pub struct Watch(Mutex<Option<Trial>>);
 
 impl Watch {
-    /// Begins. A single allocation above `largest` bytes, and more than this time, end the process: nothing else stops
-    /// a reader that would take all memory or never return.
+    /// Begins. A single allocation above `largest` bytes, and more than this time, end the process: nothing
+    /// else stops a reader that would take all memory or never return.
     pub fn watch(&'static self, input: &[u8], largest: usize, time: Duration) {
         static CLOCK: AtomicBool = AtomicBool::new(false);
         if !CLOCK.swap(true, Ordering::Relaxed) {

@@ -44,25 +44,33 @@ pub fn meshes() -> Vec<Vec<u8>> {
         add(4, &fuzz::binary_msh_4(size));
     }
     add(4, &binary_msh_2());
-    add(5, b"Vertex 0 0 0 0\nVertex 1 1 0 0 {rgb=(1 0 0)}\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\nFace 1 0 1 2\n# end\n");
+    add(
+        5,
+        b"Vertex 0 0 0 0\nVertex 1 1 0 0 {rgb=(1 0 0)}\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\nFace \
+             1 0 1 2\n# end\n",
+    );
     add(6, b"v 0 0 0\nv 1 0 0\nv 0 1 0\ns 1 2\ns 2 3\n");
     files
 }
 
 /// What modeling tools say about faces, polygons, negative indices, lines and points.
-const TAILORED: &str = "mtllib shirt.mtl\no shirt\ng front left\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1. 0\nv 0 1e0 0\n\
-    v .5 .5 1\nvt 0 0\nvt 1 0\nvt 1 1 0\nvn 0 0 1\nvn 0 1 0\nusemtl red\ns 1\nf 1/1/1 2/2/1 3/3/1 4/1/2\ns off\n\
-    f -1//1 -2//2 -5//1\nusemtl blue\nf 1/1 5/2 2/3\nl 1 2 3 4\np 5 \\\n 1\n";
+const TAILORED: &str = "mtllib shirt.mtl\no shirt\ng front left\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1. 0\nv 0 \
+                        1e0 0\n\
+                        v .5 .5 1\nvt 0 0\nvt 1 0\nvt 1 1 0\nvn 0 0 1\nvn 0 1 0\nusemtl red\ns 1\nf 1/1/1 \
+                        2/2/1 3/3/1 4/1/2\ns off\n\
+                        f -1//1 -2//2 -5//1\nusemtl blue\nf 1/1 5/2 2/3\nl 1 2 3 4\np 5 \\\n 1\n";
 
 const PLY_TEXT: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\n\
     property double y\nproperty float z\nproperty uchar red\nproperty int body\nelement face 2\n\
-    property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n\
+    property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nproperty int \
+    vertex2\nend_header\n\
     0 0 0 255 0\n1 0 0 255 0\n0 1 0 0 1\n1 1 1. 0 1\n3 0 1 2\n4 0 1 3 2\n0 3\n";
 
 /// Elements and properties that no reader needs, before those that it does.
 const PLY_LISTS: &str = "ply\nformat ascii 1.0\nelement material 2\nproperty list int float weights\n\
     property short id\nelement vertex 3\nproperty list uchar uchar tags\nproperty float x\nproperty float y\n\
-    property float z\nproperty uchar obstacle\nelement face 1\nproperty list ushort uint vertex_index\nend_header\n\
+    property float z\nproperty uchar obstacle\nelement face 1\nproperty list ushort uint \
+    vertex_index\nend_header\n\
     2 0.5 0.5 1\n0 2\n1 9 0 0 0 1\n0 1 0 0 1\n0 0 1 0 0\n3 0 1 2\n";
 
 fn binary_ply() -> Vec<u8> {
@@ -78,13 +86,17 @@ fn binary_ply() -> Vec<u8> {
     file
 }
 
-const MSH_2: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body\"\n$EndPhysicalNames\n$Nodes\n5\n\
-    1 0 0 0\n2 1 0 0\n3 0 1 0\n9 0 0 1\n4 2 2 2\n$EndNodes\n$Elements\n5\n1 15 2 0 1 1\n2 2 2 0 1 1 2 3\n\
-    3 4 2 0 1 1 2 3 9\n4 1 2 0 1 9 4\n5 3 2 0 1 1 2 4 3\n$EndElements\n";
+const MSH_2: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 \
+                     1 \"body\"\n$EndPhysicalNames\n$Nodes\n5\n\
+                     1 0 0 0\n2 1 0 0\n3 0 1 0\n9 0 0 1\n4 2 2 2\n$EndNodes\n$Elements\n5\n1 15 2 0 1 1\n2 2 \
+                     2 0 1 1 2 3\n\
+                     3 4 2 0 1 1 2 3 9\n4 1 2 0 1 9 4\n5 3 2 0 1 1 2 4 3\n$EndElements\n";
 
-const MSH_4: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 0 0\n$EndEntities\n$Nodes\n\
-    1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n$Elements\n2 2 1 2\n3 1 4 1\n1 1 2 3 4\n\
-    2 1 2 1\n2 1 2 3\n$EndElements\n";
+const MSH_4: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 0 \
+                     0\n$EndEntities\n$Nodes\n\
+                     1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n$Elements\n2 2 1 \
+                     2\n3 1 4 1\n1 1 2 3 4\n\
+                     2 1 2 1\n2 1 2 3\n$EndElements\n";
 
 fn binary_msh_2() -> Vec<u8> {
     let mut file = b"$MeshFormat\n2.2 1 8\n".to_vec();

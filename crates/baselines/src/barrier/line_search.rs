@@ -58,7 +58,7 @@ impl LineSearch {
     }
 }
 
-impl ForwardStep for LineSearch {
+impl<S: Search> ForwardStep<S> for LineSearch {
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.objective.begin(scene, state);
         self.stepper.begin(scene.rest().len());
@@ -68,14 +68,15 @@ impl ForwardStep for LineSearch {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut S,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
         let range = self.objective.largest_range(scene);
-        self.search.list(scene, state, search, &self.paths, PathTime::Common, range, statistics);
+        self.search.nearest = range;
+        self.search.list(scene, state, search, &self.paths, PathTime::Common, statistics);
         let mut step = earliest(&self.ccd, scene, state, &self.paths);
         let still = |v: usize| state.is_movable(v) || self.paths[v] == Vector::zeros();
         if (0..self.paths.len()).all(still) {

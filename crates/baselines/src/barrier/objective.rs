@@ -45,7 +45,7 @@ pub struct Derivatives {
 #[derive(Debug, Default)]
 pub struct Objective {
     params: BarrierParams,
-    /// Range of the barrier over the desired distance of the pair.
+    /// Range of the barrier over the contact distance of the pair.
     range_share: f64,
     edges: EdgeLimits,
 }
@@ -120,7 +120,7 @@ impl Objective {
             if separation.distance >= largest {
                 return None;
             }
-            let range = self.range_share * scene.desired_distance(kind, pair);
+            let range = self.range_share * scene.delta(kind, pair);
             let min_separation = candidates.min_separations[p].min(0.9 * range);
             let gap = separation.distance - min_separation;
             let jet = barrier(self.params.strength, gap, range - min_separation);

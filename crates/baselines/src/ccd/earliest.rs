@@ -51,7 +51,7 @@ pub(crate) fn earliest(
     f64::from_bits(first.into_inner())
 }
 
-impl ForwardStep for EarliestImpact {
+impl<S: Search> ForwardStep<S> for EarliestImpact {
     fn begin(&mut self, scene: &CollisionScene, _: &ResolveState) {
         self.stepper.begin(scene.rest().len());
     }
@@ -60,13 +60,13 @@ impl ForwardStep for EarliestImpact {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut S,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        self.search.list(scene, state, search, &self.paths, PathTime::Common, 0.0, statistics);
+        self.search.list(scene, state, search, &self.paths, PathTime::Common, statistics);
         let time = earliest(&self.ccd, scene, state, &self.paths);
         for v in 0..self.paths.len() {
             self.stepper.limit(v, time);

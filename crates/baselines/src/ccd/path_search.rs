@@ -23,20 +23,21 @@ pub(crate) enum PathTime {
 pub(crate) struct PathSearch {
     /// Made by the first search.
     search: Option<ProximitySearch>,
+    /// Pairs that come nearer than this on the way become candidates too [m].
+    pub nearest: f64,
     displacements: Vec<Vector>,
     radii: Vec<f64>,
 }
 
 impl PathSearch {
-    /// Pairs that come nearer than `nearest` [m] on the way become candidates too.
+    /// Lists the pairs for paths at a `path_time`.
     pub(crate) fn list(
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut impl Search,
         paths: &[Vector],
         path_time: PathTime,
-        nearest: f64,
         statistics: &mut Statistics,
     ) {
         let largest = state.x.iter().zip(paths).map(|(x, p)| x.coords.amax() + p.amax()).fold(0.0, f64::max);
@@ -48,7 +49,7 @@ impl PathSearch {
             Coverage::Distance(covered) => {
                 let longest = paths.iter().map(Vector::norm).fold(0.0, f64::max);
                 2.0 * (longest * (1.0 + 1e-12) + rounding)
-                    < covered - scene.spacing().largest_min_separation().max(nearest)
+                    < covered - scene.spacing().largest_min_separation().max(self.nearest)
             }
         };
         if within {

@@ -85,7 +85,7 @@ impl PerVertexImpact {
     }
 }
 
-impl ForwardStep for PerVertexImpact {
+impl<S: Search> ForwardStep<S> for PerVertexImpact {
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         let count = scene.rest().len();
         self.stepper.begin(count);
@@ -99,7 +99,7 @@ impl ForwardStep for PerVertexImpact {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut dyn Search,
+        search: &mut S,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
@@ -112,7 +112,7 @@ impl ForwardStep for PerVertexImpact {
         }
         self.limit_bodies(scene, state);
         self.shorten();
-        self.search.list(scene, state, search, &self.paths, PathTime::PerVertex, 0.0, statistics);
+        self.search.list(scene, state, search, &self.paths, PathTime::PerVertex, statistics);
         self.changed.fill(true);
         for round in 1..=Self::MAX_ROUNDS {
             let common = self.limit(scene, state);

@@ -45,8 +45,8 @@ pub fn two_way_with_stage<B: BackwardStep>(
 }
 
 /// Parameters under which contacts keep their volume, as in Sifakis et al. 2008 ("Globally coupled collision
-/// handling using volume preserving impulses"), and are not separated to the volume of the desired distance
-/// (paper, section 4.1): a pair below its desired distance keeps the gap at which it became a candidate in
+/// handling using volume preserving impulses"), and are not separated to the volume of the contact distance
+/// (paper, section 4.1): a pair below its contact distance keeps the gap at which it became a candidate in
 /// the call. Calls must have a time step, because the growth of gaps is switched off by a separation speed of
 /// almost 0.
 #[must_use]

@@ -3,17 +3,17 @@
 use crate::Outcome;
 use crate::ccd::AdditiveCcd;
 use bowknot_twoway::CollisionScene;
-use bowknot_twoway::constraints::DesiredDistance;
+use bowknot_twoway::constraints::DeltaRule;
 use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector, distance};
 use bowknot_twoway::proximity::{CollisionModel, Pair, PairList, ProximitySearch};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// A pair counts as apart above this share of its desired distance, ..
+/// A pair counts as apart above this share of its contact distance, ..
 const SEPARATION_SHARE: f64 = 0.1;
 /// .. or above this share of its gap at the start, if that is less.
 const GAP_SHARE: f64 = 0.5;
-/// Detection may stop early by this share of the desired distance. A pair that ends at its desired distance
+/// Detection may stop early by this share of the contact distance. A pair that ends at its contact distance
 /// must never count as meeting, however far apart it started.
 const SLACK_SHARE: f64 = 0.5;
 /// Smallest number of pairs of a parallel task.
@@ -29,8 +29,8 @@ pub struct Impact {
     /// Until this time in [0, 1] the pair is certain to stay apart. 1: all the way, but it ends nearer than
     /// its thickness.
     pub time: f64,
-    /// Desired distance of the pair [m].
-    pub desired: f64,
+    /// Contact distance of the pair [m].
+    pub delta: f64,
 }
 
 impl Impact {
@@ -41,10 +41,10 @@ impl Impact {
 }
 
 /// Finds impacts: candidates by swept boxes, then additive continuous detection. A pair that it does not find
-/// keeps a tenth of its desired distance on the whole way, or half of its gap at the start.
+/// keeps a tenth of its contact distance on the whole way, or half of its gap at the start.
 #[derive(Debug)]
 pub struct ImpactSearch {
-    /// A pair that does not meet, but ends at less than this share of its desired distance, is found too. 0,
+    /// A pair that does not meet, but ends at less than this share of its contact distance, is found too. 0,
     /// the default: no such pair is.
     pub thickness: f64,
     search: ProximitySearch,
@@ -98,18 +98,18 @@ impl ImpactSearch {
                 .with_min_len(CHUNK)
                 .filter_map(|(&pair, separation)| {
                     let delta = scene.spacing().of(scene.model(), kind, &pair).delta;
-                    let rule = DesiredDistance { delta, growth };
+                    let rule = DeltaRule { delta, growth };
                     let gap = separation.distance;
-                    let (desired, _) = rule.of(scene.model(), kind, &pair, scene.rest(), gap);
-                    let impact = Impact { kind, pair, time: 0.0, desired };
+                    let (delta, _) = rule.of(scene.model(), kind, &pair, scene.rest(), gap);
+                    let impact = Impact { kind, pair, time: 0.0, delta };
                     if !accept(&impact) {
                         return None;
                     }
-                    let min_separation = (SEPARATION_SHARE * desired).min(GAP_SHARE * gap);
-                    let slackness = (SLACK_SHARE * desired / gap).min(ccd.slackness);
+                    let min_separation = (SEPARATION_SHARE * delta).min(GAP_SHARE * gap);
+                    let slackness = (SLACK_SHARE * delta / gap).min(ccd.slackness);
                     let ccd = AdditiveCcd { slackness, ..*ccd };
                     let time = clearance(&ccd, scene, kind, &pair, x, paths, min_separation);
-                    let near = || end_distance(scene, kind, &pair, x, paths) < thickness * desired;
+                    let near = || end_distance(scene, kind, &pair, x, paths) < thickness * delta;
                     (time < 1.0 || (thickness > 0.0 && near())).then_some(Impact { time, ..impact })
                 });
             impacts.par_extend(found);

@@ -13,9 +13,9 @@ pub struct ZoneParams {
     pub solver: ZoneSolver,
     /// Largest number of sweeps or gradient steps of one optimization. Default 200.
     pub max_sweeps: u32,
-    /// Gauss-Seidel stops when a sweep changes no row by more than this, in desired distances. Default 0.01.
+    /// Gauss-Seidel stops when a sweep changes no row by more than this, in contact distances. Default 0.01.
     pub tolerance: f64,
-    /// A pair that does not meet, but ends at less than this share of its desired distance, gets a row too.
+    /// A pair that does not meet, but ends at less than this share of its contact distance, gets a row too.
     /// Default 0, as published: zones prevent intersections and keep no distance. With 0.8 they solve the
     /// problem of the methods that keep a distance, up to a fifth of it. Closer to 1, rows that are
     /// linearized again and again may oscillate.

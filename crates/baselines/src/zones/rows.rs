@@ -24,7 +24,7 @@ impl ImpactRows {
     }
 
     /// Adds the row of an impact, or replaces the pair's row and keeps its multiplier. The row is linearized
-    /// at the last time at which the pair is certain not to meet: n . (p - q)(y) >= desired distance with the
+    /// at the last time at which the pair is certain not to meet: n . (p - q)(y) >= contact distance with the
     /// normal n there.
     pub(crate) fn add(&mut self, scene: &CollisionScene, impact: &Impact, x: &[Point], paths: &[Vector]) {
         let kind = impact.kind;
@@ -40,7 +40,7 @@ impl ImpactRows {
             }
             _ => separation::separate(kind, &points),
         };
-        let row = contact_row(ContactForm::Gap, kind, [0, 1, 2, 3], &points, &separation, impact.desired);
+        let row = contact_row(ContactForm::Gap, kind, [0, 1, 2, 3], &points, &separation, impact.delta);
         let row = Row { vertices, ..row };
         self.rows.entry((kind, impact.pair.elements)).or_insert((row, 0.0)).0 = row;
     }

@@ -3,8 +3,8 @@
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector, intersection};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{
-    AcceptedState, BackwardStep, CallInput, CollisionScene, ForwardStep, Params, ResolveInput, ResolveState,
-    Resolver, Search, Statistics,
+    AcceptedState, BackwardStep, CallInput, CollisionScene, ContactData, ForwardStep, Params, ResolveInput,
+    ResolveState, Resolver, Search, Statistics,
 };
 use std::ops::ControlFlow;
 
@@ -120,14 +120,21 @@ impl Scene {
     }
 
     pub fn collision_scene(&self, params: Params) -> CollisionScene {
-        CollisionScene::new(self.model.clone(), &self.x, &vec![0.01; self.x.len()], params).unwrap()
+        CollisionScene::new(
+            self.model.clone(),
+            &self.x,
+            &vec![0.01; self.x.len()],
+            ContactData::default(),
+            params,
+        )
+        .unwrap()
     }
 }
 
 /// The state at the start of a call, with the candidate pairs of its first search.
 pub fn with_candidates(
     collision: &CollisionScene,
-    search: &mut dyn Search,
+    search: &mut impl Search,
     x: &[Point],
     target: &[Point],
 ) -> ResolveState {
@@ -147,7 +154,7 @@ pub fn with_candidates(
 }
 
 /// Resolves, and asserts that no accepted state nor any of 64 states between two of them intersects.
-pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep>(
+pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep<S>>(
     resolver: &mut Resolver<S, B, F>,
     scene: &Scene,
     target: &[Point],

@@ -92,16 +92,17 @@ impl Figure for Convergence {
     fn question(&self) -> &'static str {
         "A time step alternates Newton iterations and collision stages. First part: the residual after k of \
          16 iterations (`solver.newton.step_tolerance=0`), medians and quartiles over the time steps of the \
-         second half of small runs. The residual is the net force of inertia, elasticity, contact and friction, \
-         converted to a distance in mean edge lengths. By default a time step ends at 0.003 (at time steps \
-         of 1/20 s: 0.015), or after 8 iterations. \n\nSecond part: the distance of a time step from a \
-         converged one, and its CPU time. From four states of each scene, the one before the first contact and three more up to the end of \
-         the run, four time steps are made with each setting. Their positions are compared with those of 32 \
-         iterations: root mean squares over states and vertices. That reference is the method's own most \
-         exact run: distances show that it agrees with itself, not that it is right. If distances fall while \
-         the residual stalls, iterations approach a state that does not solve the time step. All settings \
-         start from the same states. The chart shows the end of the first time step, because contact \
-         amplifies small differences; the table has all four time steps."
+         second half of small runs. The residual is the net force of inertia, elasticity, contact and \
+         friction, converted to a distance in mean edge lengths. By default a time step ends at 0.003 (at \
+         time steps of 1/20 s: 0.015), or after 8 iterations. \n\nSecond part: the distance of a time step \
+         from a converged one, and its CPU time. From four states of each scene, the one before the first \
+         contact and three more up to the end of the run, four time steps are made with each setting. Their \
+         positions are compared with those of 32 iterations: root mean squares over states and vertices. \
+         That reference is the method's own most exact run: distances show that it agrees with itself, not \
+         that it is right. If distances fall while the residual stalls, iterations approach a state that \
+         does not solve the time step. All settings start from the same states. The chart shows the end of \
+         the first time step, because contact amplifies small differences; the table has all four time \
+         steps."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {

@@ -20,8 +20,8 @@ struct Goal {
     unit: &'static str,
 }
 
-/// A row of the paper's Table 2 at the paper's size: the scene, the number of its first time steps, and seconds
-/// per time step of the paper's collision stage, on its GPU.
+/// A row of the paper's Table 2 at the paper's size: the scene, the number of its first time steps, and
+/// seconds per time step of the paper's collision stage, on its GPU.
 pub(super) const TABLE_2: [(&str, usize, f64); 12] = [
     ("needle", 8, 0.036),
     ("blade", 2, 0.267),
@@ -40,7 +40,8 @@ pub(super) const TABLE_2: [(&str, usize, f64); 12] = [
 /// Scenes in which the time of the dynamics is compared, beside those of [`TABLE_2`] of the same name.
 const DYNAMICS: [&str; 3] = ["drape", "dress", "mat"];
 
-/// Scales of `drape` for the growth of the time with the number of vertices; the number grows with the square.
+/// Scales of `drape` for the growth of the time with the number of vertices; the number grows with the
+/// square.
 const SCALES: [f64; 4] = [0.64, 1.28, 2.56, 5.12];
 
 /// Time steps of `drape` for that growth; it touches the ball in the last ones.
@@ -56,13 +57,13 @@ impl Figure for Goals {
     }
 
     fn question(&self) -> &'static str {
-        "First time steps of the scenes of Table 2 at the paper's size, see `goals-table-2.csv`: seconds of the \
-         collision stage on two threads as multiples of the paper's on a GPU, two-way steps per time step, all \
-         its collision problems together, and peak memory of the process per vertex. With `--before BOWKNOT`, \
-         a program of an older commit: its time with one thread over the present one, geometric mean for the \
-         collision stage. Stages: the whole time step and the worst one, see `goals-stages.csv`. `drape`: growth \
-         of the time per time step with the number of vertices, as the exponent of a fitted power, over the \
-         time steps in contact."
+        "First time steps of the scenes of Table 2 at the paper's size, see `goals-table-2.csv`: seconds of \
+         the collision stage on two threads as multiples of the paper's on a GPU, two-way steps per time \
+         step, all its collision problems together, and peak memory of the process per vertex. With \
+         `--before BOWKNOT`, a program of an older commit: its time with one thread over the present one, \
+         geometric mean for the collision stage. Stages: the whole time step and the worst one, see \
+         `goals-stages.csv`. `drape`: growth of the time per time step with the number of vertices, as the \
+         exponent of a fitted power, over the time steps in contact."
     }
 
     fn on_page(&self) -> bool {
@@ -283,8 +284,8 @@ const STAGES: [(&str, Stage); 6] = [
     ("forward step", |s| s.forward),
 ];
 
-/// One thread against two, and the growth of the time with the number of vertices: of the whole step and of the
-/// worst stage.
+/// One thread against two, and the growth of the time with the number of vertices: of the whole step and of
+/// the worst stage.
 fn stage_goals(runs: &Runs<'_>, table: &mut Table) -> Result<Vec<Goal>> {
     let [threads, growth] = [two_threads(runs)?, growth(runs)?];
     for (k, (name, _)) in STAGES.iter().enumerate() {
@@ -331,8 +332,8 @@ fn on_two_threads(runs: &Runs<'_>, case: &Case) -> Result<Option<[ProcessRun; 2]
     Ok(runs.now(&Case { threads: 2, ..*case })?.map(|two| [one, two]))
 }
 
-/// The time steps of `sphere` before contact, and those in contact. The first one allocates buffers; it does not
-/// count.
+/// The time steps of `sphere` before contact, and those in contact. The first one allocates buffers; it does
+/// not count.
 fn sphere(runs: &Runs<'_>) -> Case {
     runs.sized("sphere", 1.0, 18, 1)
 }

@@ -1,5 +1,5 @@
-//! What happens at the ends of what users ask for: counts of intersections and of numbers that are not finite,
-//! convergence, energy and stretch.
+//! What happens at the ends of what users ask for: counts of intersections and of numbers that are not
+//! finite, convergence, energy and stretch.
 
 use crate::bench::{Bench, Size};
 use crate::figure::{Figure, Part, Report};
@@ -20,20 +20,22 @@ impl Figure for Stability {
     }
 
     fn question(&self) -> &'static str {
-        "Small scenes, each with one quantity far from its usual value: a soft block falls on a box and a sheet on both \
-         (time step, stiffness, density, size, distance from the origin, speed of a sheet, delta, aspect ratio), or a \
-         block falls on a sheet that is held along two sides (density and speed of a block, stretch limit). The other \
-         scenes are hard by themselves. The judge certifies every state and every path of a two-way step.\n\n\
-         *Intersections*: in states and on paths. *Not finite*: vertices with a position or velocity that is not finite, \
-         over all time steps. *Converged*: share of time steps whose last collision problem ended by its stopping rule. \
-         *Energy growth*: largest rise of kinetic, elastic and potential energy over an earlier time step, once nothing \
-         drives the scene any more, relative to the kinetic energy of the start and what gravity can add over the \
-         length of the scene. *Stretch*: largest ratio of an edge of cloth to its rest length. *Two-way steps*: per time \
-         step, mean and largest, over all Newton iterations.\n\n\
-         A case is ok if nothing intersects, all numbers are finite, 0.95 of the time steps converged, the energy \
-         growth is at most 0.05, the stretch at most 1.04 times its limit, and no tetrahedron is inverted at the end. \
-         Otherwise its row names the goals that it misses, and the reason as far as it is known. Cases whose prescribed \
-         places cannot be reached need not converge."
+        "Small scenes, each with one quantity far from its usual value: a soft block falls on a box and a \
+         sheet on both (time step, stiffness, density, size, distance from the origin, speed of a sheet, \
+         delta, aspect ratio), or a block falls on a sheet that is held along two sides (density and speed \
+         of a block, stretch limit). The other scenes are hard by themselves. The judge certifies every \
+         state and every path of a two-way step.\n\n\
+         *Intersections*: in states and on paths. *Not finite*: vertices with a position or velocity that is \
+         not finite, over all time steps. *Converged*: share of time steps whose last collision problem \
+         ended by its stopping rule. *Energy growth*: largest rise of kinetic, elastic and potential energy \
+         over an earlier time step, once nothing drives the scene any more, relative to the kinetic energy \
+         of the start and what gravity can add over the length of the scene. *Stretch*: largest ratio of an \
+         edge of cloth to its rest length. *Two-way steps*: per time step, mean and largest, over all Newton \
+         iterations.\n\n\
+         A case is ok if nothing intersects, all numbers are finite, 0.95 of the time steps converged, the \
+         energy growth is at most 0.05, the stretch at most 1.04 times its limit, and no tetrahedron is \
+         inverted at the end. Otherwise its row names the goals that it misses, and the reason as far as it \
+         is known. Cases whose prescribed places cannot be reached need not converge."
     }
 
     fn page(&self) -> &'static str {
@@ -71,8 +73,9 @@ impl Figure for Stability {
             count.add(case, &outcome);
         }
         let finding = format!(
-            "{} cases with {} states and {} paths judged: {} intersections, {} vertices that are not finite, {} runs that \
-             ended early. {} cases reach every goal, {} are refused with a message, {} miss a goal.",
+            "{} cases with {} states and {} paths judged: {} intersections, {} vertices that are not finite, \
+             {} runs that ended early. {} cases reach every goal, {} are refused with a message, {} miss a \
+             goal.",
             count.cases,
             count.states,
             count.paths,

@@ -1,17 +1,17 @@
 //! The rows of a state: contacts within range and edge limits, linearized there.
 //!
-//! Contacts are in gap form. The desired distance of a pair follows from its gap at the start of the call; a
+//! Contacts are in gap form. The contact distance of a pair follows from its gap at the start of the call; a
 //! pair that started out of range is asked for all of delta.
 
 use super::nonnegative;
-use bowknot::constraints::{ContactForm, DesiredDistance, EdgeLimits, EdgeReference, contact_row};
+use bowknot::constraints::{ContactForm, DeltaRule, EdgeLimits, EdgeReference, contact_row};
 use bowknot::geometry::{PairKind, Point, Vector, separation};
 use bowknot::lcp::Row;
 use bowknot::proximity::{Pair, PairList, ProximitySearch};
 use bowknot::recording::States;
 use bowknot::twoway::{CallInput, CollisionScene};
 
-/// Slack below which a row counts as active: of contacts in desired distances, of edges in limits. Methods
+/// Slack below which a row counts as active: of contacts in contact distances, of edges in limits. Methods
 /// stop that far from their active rows.
 const ACTIVE: [f64; 2] = [0.1, 0.02];
 
@@ -73,10 +73,10 @@ impl RowSet {
                 set.min_gap = Some(gap);
                 let delta = scene.spacing().of(scene.model(), kind, pair).delta;
                 let start = start_gap(scene, kind, pair, &states.x);
-                let rule = DesiredDistance { delta, growth };
-                let desired = rule.of(scene.model(), kind, pair, scene.rest(), start).0;
-                let row = contact_row(ContactForm::Gap, kind, pair.vertices, x, separation, desired);
-                set.push(row, ACTIVE[0] * desired, &points);
+                let rule = DeltaRule { delta, growth };
+                let delta = rule.of(scene.model(), kind, pair, scene.rest(), start).0;
+                let row = contact_row(ContactForm::Gap, kind, pair.vertices, x, separation, delta);
+                set.push(row, ACTIVE[0] * delta, &points);
             }
         }
         set.contacts = set.rows.len();

@@ -12,8 +12,8 @@ use std::path::Path;
 pub enum Start {
     /// As the scene is.
     Scene,
-    /// Vertices inside of solids are elsewhere, so that tetrahedra are inverted: each is mirrored at the center of
-    /// the solid and moved out by this factor.
+    /// Vertices inside of solids are elsewhere, so that tetrahedra are inverted: each is mirrored at the
+    /// center of the solid and moved out by this factor.
     InsideOut(f64),
     /// The solid is mirrored: all of its tetrahedra are inverted, its surface is sound.
     Mirrored,
@@ -36,8 +36,8 @@ pub struct Case {
     pub driven_until: f64,
     /// Largest stretch limit of its bodies.
     pub stretch_limit: f64,
-    /// Whether all prescribed places can be reached, so that collision problems can be expected to end by their
-    /// stopping rule.
+    /// Whether all prescribed places can be reached, so that collision problems can be expected to end by
+    /// their stopping rule.
     pub can_converge: bool,
     /// Whether inverted tetrahedra can recover without their surface passing through itself.
     pub can_recover: bool,

@@ -12,11 +12,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Largest growth of energy that counts as none, in the case's energy scale: separation to the contact distance
-/// and rows that push bodies apart may add a little.
+/// Largest growth of energy that counts as none, in the case's energy scale: separation to the contact
+/// distance and rows that push bodies apart may add a little.
 const GROWTH: f64 = 0.05;
 
-/// Largest excess of a stretch over its limit: twice the tolerance of the stopping rule, `solver.stop.stretch_tolerance`.
+/// Largest excess of a stretch over its limit: twice the tolerance of the stopping rule,
+/// `solver.stop.stretch_tolerance`.
 const STRETCH_EXCESS: f64 = 1.04;
 
 /// Smallest share of time steps whose last collision problem must have ended by its stopping rule.
@@ -171,8 +172,8 @@ fn not_finite(positions: &[Point], velocities: &[Vector]) -> usize {
 
 /// The energy of a run: kinetic, elastic and potential.
 struct Energies {
-    /// What a rise is compared with [J]: the energy of the start, kinetic and elastic, and what gravity can give the
-    /// bodies on the length of the scene.
+    /// What a rise is compared with [J]: the energy of the start, kinetic and elastic, and what gravity can
+    /// give the bodies on the length of the scene.
     scale: f64,
     driven_until: f64,
     /// Whether the bodies are strained at the start; their elastic energy then counts as energy of the start.

@@ -1,4 +1,5 @@
-//! The scenes that the sweeps change: a block and a sheet that fall on each other, and a taut sheet under a weight.
+//! The scenes that the sweeps change: a block and a sheet that fall on each other, and a taut sheet under a
+//! weight.
 
 use std::fmt::Write as _;
 
@@ -53,8 +54,8 @@ impl Default for Setting {
 }
 
 impl Setting {
-    /// Whether the block can bear its own weight; if not, gravity crushes it, and nothing keeps its tetrahedra from
-    /// being inverted.
+    /// Whether the block can bear its own weight; if not, gravity crushes it, and nothing keeps its
+    /// tetrahedra from being inverted.
     pub fn bears_its_weight(&self) -> bool {
         let weight = 1000.0 * self.density * self.block_density * 9.81 * self.length(3.0 * EDGE);
         weight < self.stiffness.unwrap_or(BLOCK_STIFFNESS)
@@ -71,7 +72,8 @@ impl Setting {
     /// The tables `simulation`, `contact` and `solver.sleep`.
     pub fn head(&self, frames: usize) -> String {
         let mut text = format!(
-            "[simulation]\ndt = {:e}\nframes = {frames}\n\n[solver.sleep]\nenabled = false\n\n[contact]\nstretch_limit = {}\n",
+            "[simulation]\ndt = {:e}\nframes = {frames}\n\n[solver.sleep]\nenabled = \
+             false\n\n[contact]\nstretch_limit = {}\n",
             self.dt, self.stretch_limit
         );
         for (key, value) in [("delta", self.delta), ("min_separation", self.min_separation)] {
@@ -103,8 +105,9 @@ impl Setting {
             .stiffness
             .map_or(2.34e-6, |young| young * CLOTH_THICKNESS.powi(3) / (12.0 * (1.0 - 0.243 * 0.243)));
         format!(
-            "\n[[body]]\nname = \"{name}\"\nfriction = 0.3\nshape = {{ type = \"sheet\", size = [{side:e}, {side:e}], \
-             edge = {edge:e} }}\nrotate = [0.0, 0.0, 10.0]\ntranslate = {}\nvelocity = [0.0, 0.0, {:?}]\n\
+            "\n[[body]]\nname = \"{name}\"\nfriction = 0.3\nshape = {{ type = \"sheet\", size = [{side:e}, \
+             {side:e}], edge = {edge:e} }}\nrotate = [0.0, 0.0, 10.0]\ntranslate = {}\nvelocity = [0.0, 0.0, \
+             {:?}]\n\
              material = {{ density = {:e}, stretch_stiffness = {stretch:e}, bend_stiffness = {bend:e} }}\n",
             self.at(x, y, z),
             -speed,
@@ -131,8 +134,8 @@ impl Setting {
     pub fn ground(&self) -> String {
         let (side, height) = (self.length(0.8), self.length(0.1));
         format!(
-            "\n[[obstacle]]\nname = \"ground\"\nfriction = 0.3\nshape = {{ type = \"box\", size = [{side:e}, {side:e}, \
-             {height:e}], edge = {:e} }}\ntranslate = {}\n",
+            "\n[[obstacle]]\nname = \"ground\"\nfriction = 0.3\nshape = {{ type = \"box\", size = [{side:e}, \
+             {side:e}, {height:e}], edge = {:e} }}\ntranslate = {}\n",
             self.length(0.1),
             self.at(0.0, 0.0, -0.05),
         )

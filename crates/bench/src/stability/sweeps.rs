@@ -11,14 +11,14 @@ const TIME_STEPS: usize = 60;
 const DURATION: f64 = 0.6;
 
 /// Why cases are known to miss a goal.
-const UNSOLVED: &str = "the block and the taut sheet are not in balance after 8 Newton iterations; the rise falls with \
-                        `simulation.newton_iterations`";
+const UNSOLVED: &str = "the block and the taut sheet are not in balance after 8 Newton iterations; the rise \
+                        falls with `simulation.newton_iterations`";
 const TINY: &str = "energies of 1e-8 J; not understood";
 const FAR: &str = "the contact distance is 40 edge lengths: nothing fits";
-const THIN: &str = "the contact distance is a thousandth of an edge and less; calls end at their step limit, it is not \
-                    understood why";
-const FAST: &str = "all motion ends within a time step, calls end at their step limit, and edges that are too long are \
-                    shortened by 3 % per call only";
+const THIN: &str = "the contact distance is a thousandth of an edge and less; calls end at their step limit, \
+                    it is not understood why";
+const FAST: &str = "all motion ends within a time step, calls end at their step limit, and edges that are \
+                    too long are shortened by 3 % per call only";
 const SLIVERS: &str = "positions are solved to 0.01 mean edge lengths, ten heights of a sliver and more";
 
 /// All sweeps; smaller sizes have their ends and one value between.
@@ -97,8 +97,8 @@ pub fn all(size: Size) -> Vec<Case> {
     cases
 }
 
-/// A sheet with a row of triangles of an aspect ratio in its middle, thrown over a block. The contact distance is the
-/// default of the scene, or half of the height of the slivers.
+/// A sheet with a row of triangles of an aspect ratio in its middle, thrown over a block. The contact
+/// distance is the default of the scene, or half of the height of the slivers.
 fn slivers(ratio: f64, own_delta: bool, steps: usize) -> Case {
     let height = EDGE / ratio;
     let delta = own_delta.then_some((0.5 * height).min(0.1 * EDGE));

@@ -7,7 +7,8 @@ use crate::bench::Size;
 /// A motion by a displacement [m] between two times [s], as TOML.
 fn motion(from: f64, until: f64, by: [f64; 3]) -> String {
     format!(
-        "motion = {{ keyframes = [{{ time = {from:?} }}, {{ time = {until:?}, translate = [{:?}, {:?}, {:?}] }}] }}\n",
+        "motion = {{ keyframes = [{{ time = {from:?} }}, {{ time = {until:?}, translate = [{:?}, {:?}, {:?}] \
+         }}] }}\n",
         by[0], by[1], by[2]
     )
 }
@@ -75,15 +76,17 @@ fn taut(steps: usize, over_ball: bool) -> Case {
     scene += &setting.sheet("sheet", [0.0, 0.0, 0.3], 0.0).replace("rotate = [0.0, 0.0, 10.0]\n", "");
     for (side, pull) in [("x-min", -0.01), ("x-max", 0.01)] {
         scene += &format!(
-            "\n[[pin]]\nbody = \"sheet\"\nside = \"{side}\"\nmotion = {{ keyframes = [{{ time = 0.0 }}, {{ time = {:?}, \
-             translate = [{pull:?}, 0.0, 0.0] }}, {{ time = {:?}, translate = [{:?}, 0.0, 0.0] }}] }}\n",
+            "\n[[pin]]\nbody = \"sheet\"\nside = \"{side}\"\nmotion = {{ keyframes = [{{ time = 0.0 }}, {{ \
+             time = {:?}, translate = [{pull:?}, 0.0, 0.0] }}, {{ time = {:?}, translate = [{:?}, 0.0, 0.0] \
+             }}] }}\n",
             0.2 * time,
             0.8 * time,
             0.5 + pull
         );
     }
     if over_ball {
-        scene += "\n[[obstacle]]\nname = \"ball\"\nfriction = 0.3\nshape = { type = \"ball\", radius = 0.1, edge = 0.03 }\n";
+        scene += "\n[[obstacle]]\nname = \"ball\"\nfriction = 0.3\nshape = \
+                  { type = \"ball\", radius = 0.1, edge = 0.03 }\n";
         scene += "translate = [0.2, 0.0, 0.19]\n";
     }
     let value = if over_ball { "over a ball" } else { "alone" };
@@ -135,7 +138,8 @@ fn pinned(cells: usize) -> (Setting, f64) {
     (setting, 10.0 * EDGE / cells as f64)
 }
 
-/// Pins whose place is inside of a ball: four vertices in the middle of a sheet are led down to `depth` below its top.
+/// Pins whose place is inside of a ball: four vertices in the middle of a sheet are led down to `depth` below
+/// its top.
 fn pins_in_ball(depth: f64, cells: usize, steps: usize) -> Case {
     let (setting, edge) = pinned(cells);
     let time = 0.3 * steps as f64 * setting.dt;

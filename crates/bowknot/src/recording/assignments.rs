@@ -3,8 +3,9 @@
 use bowknot_twoway::Params;
 use toml::{Table, Value};
 
-/// Assignments as `--set` takes them, with which [`bowknot_scene::twoway_params`] gives these parameters: a preset, if
-/// it is not the default, and each key that differs from it. None if there are no such assignments.
+/// Assignments as `--set` takes them, with which [`bowknot_scene::twoway_params`] gives these parameters: a
+/// preset, if it is not the default, and each key that differs from it. None if there are no such
+/// assignments.
 pub fn assignments(params: &Params) -> Option<Vec<String>> {
     let presets = [("fast", Params::fast()), ("quick", Params::quick()), ("paper", Params::paper())];
     let of_preset = |(name, base): (&str, Params)| {

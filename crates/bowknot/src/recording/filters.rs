@@ -1,7 +1,7 @@
 //! Which bodies of a collision problem collide: collision groups as arrays of its file.
 //!
-//! A problem without them is another one wherever bodies of a scene pass through each other on purpose: it would
-//! even be refused, because such bodies intersect at the start.
+//! A problem without them is another one wherever bodies of a scene pass through each other on purpose: it
+//! would even be refused, because such bodies intersect at the start.
 
 use super::columns::per;
 use bowknot_geometry::BodyFilter;

@@ -19,8 +19,8 @@ impl Recorder {
         Self::of_world(simulator.world(), simulator.present(), simulator.dynamics_model().masses())
     }
 
-    /// A recorder of problems of a scene with those bodies and half-spaces that are `present`, whose vertices have these
-    /// masses [kg].
+    /// A recorder of problems of a scene with those bodies and half-spaces that are `present`, whose vertices
+    /// have these masses [kg].
     pub(crate) fn of_world(world: &World, present: &[bool], masses: &[f64]) -> Self {
         let count = world.collision_vertices();
         let topology = world.collision.topology();

@@ -4,12 +4,12 @@ use crate::recording::filters::default_filter;
 use crate::recording::states::States;
 use bowknot_geometry::Topology;
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{Params, ResolveError, ResolveInput, Resolver};
+use bowknot_twoway::{ContactData, Params, ResolveError, ResolveInput, Resolver};
 use std::collections::BTreeMap;
 
 impl States {
-    /// The collision model of the problem: a body is an obstacle if all its vertices are. Which bodies collide is
-    /// what [`Self::filters`] says.
+    /// The collision model of the problem: a body is an obstacle if all its vertices are. Which bodies
+    /// collide is what [`Self::filters`] says.
     ///
     /// # Errors
     /// A mesh that is none, a body with obstacle and deformable vertices; in words.
@@ -24,8 +24,8 @@ impl States {
         for (vertex, (&body, &flag)) in self.body.iter().zip(&self.obstacle).enumerate() {
             if *obstacle.entry(body).or_insert(flag) != flag {
                 return Err(format!(
-                    "array O: body {body} has obstacle and deformable vertices (vertex {vertex} differs from its \
-                     first)"
+                    "array O: body {body} has obstacle and deformable vertices (vertex {vertex} differs from \
+                     its first)"
                 ));
             }
         }
@@ -43,16 +43,14 @@ impl States {
     /// The two-way method for the problem, over its [`Self::collision_model`].
     ///
     /// # Errors
-    /// As [`Resolver::new`] and [`Resolver::with_bodies`].
+    /// As [`Resolver::with_contact`].
     pub fn resolver(&self, model: CollisionModel, params: Params) -> Result<Resolver, ResolveError> {
-        let mut resolver = Resolver::new(model, &self.rest, &self.masses, params)?;
-        if !self.body_contacts.is_empty() {
-            resolver = resolver.with_bodies(self.body_contacts.clone())?;
-        }
-        if !self.half_space_contacts.is_empty() {
-            resolver = resolver.with_half_spaces(self.half_space_contacts.clone())?;
-        }
-        resolver.with_pair_friction(&self.pair_frictions)
+        let contact = ContactData {
+            bodies: self.body_contacts.clone(),
+            half_spaces: self.half_space_contacts.clone(),
+            pairs: self.pair_frictions.clone(),
+        };
+        Resolver::with_contact(model, &self.rest, &self.masses, contact, params)
     }
 
     /// The call that the problem stands for.

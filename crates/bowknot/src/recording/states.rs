@@ -59,12 +59,12 @@ const ARRAYS: [&str; 29] = [
 /// `delta` [m], `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]`
 /// [m] and `plane_friction[h]` likewise; `pair_friction[k,3]`: two bodies, half-spaces numbered after the
 /// bodies, and their coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what
-/// friction measures slip from. `known[n]`: vertices whose contacts the target knows. `carried[k,3]`: pairs that carry
-/// something at the start, by their kind (0 vertex and vertex, 1 vertex and edge, 2 vertex and triangle, 3 edge and edge, 4
-/// vertex and half-space) and elements, and `multipliers[k,4]`: of normal and friction [m]. `yielding[k,2]`: edges that may be
-/// longer than by `stretch_limit`, and `yielding_limit[k]`: how long [m]. `collision_groups[b]`,
-/// `collides_with[b]` (bits of the groups that a body is in, and of those that it meets) and `self_collision[b]`: which
-/// bodies collide.
+/// friction measures slip from. `known[n]`: vertices whose contacts the target knows. `carried[k,3]`: pairs
+/// that carry something at the start, by their kind (0 vertex and vertex, 1 vertex and edge, 2 vertex and
+/// triangle, 3 edge and edge, 4 vertex and half-space) and elements, and `multipliers[k,4]`: of normal and
+/// friction [m]. `yielding[k,2]`: edges that may be longer than by `stretch_limit`, and `yielding_limit[k]`:
+/// how long [m]. `collision_groups[b]`, `collides_with[b]` (bits of the groups that a body is in, and of
+/// those that it meets) and `self_collision[b]`: which bodies collide.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct States {
     /// The state, free of intersections.
@@ -248,8 +248,8 @@ impl States {
     }
 }
 
-/// Writes the answer to a problem, atomically: the resolved `x[n,3]` [m] as f64, and of the problem what tells
-/// whether a state intersects, `y`, `F`, `E`, `P`, `O`, `body`, `planes` and the collision groups.
+/// Writes the answer to a problem, atomically: the resolved `x[n,3]` [m] as f64, and of the problem what
+/// tells whether a state intersects, `y`, `F`, `E`, `P`, `O`, `body`, `planes` and the collision groups.
 ///
 /// # Errors
 /// The system's refusal, with the path.
@@ -336,16 +336,14 @@ fn bodies(archive: &mut Archive<'_>, obstacle: &[bool]) -> Result<Vec<u32>, IoEr
     let limit = values.len().max(2) as f64;
     if let Some(vertex) = values.iter().position(|&b| !(b >= 0.0 && b < limit && b.fract() == 0.0)) {
         let body = values[vertex];
-        return Err(
-            archive.fault(
-                "body",
-                format!(
-                    "vertex {vertex} has body {body}; bodies are numbered 0, 1, 2 and so on, here up to {} at most, \
-                     because there are no more bodies than vertices",
-                    limit - 1.0
-                )
-            )
-        );
+        return Err(archive.fault(
+            "body",
+            format!(
+                "vertex {vertex} has body {body}; bodies are numbered 0, 1, 2 and so on, here up to {} at \
+                     most, because there are no more bodies than vertices",
+                limit - 1.0
+            ),
+        ));
     }
     Ok(values.into_iter().map(|b| b as u32).collect())
 }
@@ -359,7 +357,8 @@ fn planes(archive: &mut Archive<'_>) -> Result<Vec<HalfSpace>, IoError> {
         let is_offset = offset.is_finite() || offset == f64::NEG_INFINITY;
         if !(length.is_finite() && length > 0.0 && is_offset) {
             let message = format!(
-                "row {index} needs a normal (finite, not zero) and an offset (finite, or -inf while it is not there)"
+                "row {index} needs a normal (finite, not zero) and an offset (finite, or -inf while it is \
+                 not there)"
             );
             return Err(archive.fault("planes", message));
         }
@@ -379,7 +378,7 @@ fn time_step(archive: &mut Archive<'_>) -> Result<Option<f64>, IoError> {
     }
 }
 
-/// Ranges are checked where the numbers are used, by [`bowknot_twoway::Resolver::with_bodies`].
+/// Ranges are checked where the numbers are used, by [`bowknot_twoway::Resolver::with_contact`].
 fn body_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<BodyContact>, IoError> {
     let mut column = |name| per(archive, name, count, ["body", "bodies"]);
     let (thickness, delta) = (column("thickness")?, column("delta")?);

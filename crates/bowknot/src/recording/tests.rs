@@ -63,8 +63,8 @@ fn a_recorded_problem_ends_where_the_simulation_did() {
     solve_again(text, 8);
 }
 
-/// Makes time steps of a scene and solves each of their problems again from its file, to the same end. Returns the last
-/// of them.
+/// Makes time steps of a scene and solves each of their problems again from its file, to the same end.
+/// Returns the last of them.
 fn solve_again(text: &str, steps: usize) -> (Simulator, States) {
     let scene = Scene::from_toml(text, ".").expect("a scene");
     let folder = tempfile::tempdir().expect("a folder");
@@ -85,8 +85,8 @@ fn solve_again(text: &str, steps: usize) -> (Simulator, States) {
     (simulator, last)
 }
 
-/// Bodies that pass through each other and one that passes through itself, as collision groups allow: without the
-/// groups the recorded start would be refused, and the bodies pushed apart.
+/// Bodies that pass through each other and one that passes through itself, as collision groups allow: without
+/// the groups the recorded start would be refused, and the bodies pushed apart.
 #[test]
 fn bodies_of_other_collision_groups_pass_through_each_other_in_a_recorded_problem() {
     let text = r#"

@@ -1,14 +1,15 @@
 //! Cleaning meshes that no simulation can start from: garments whose panels meet in seams without being
 //! joined, and solids with faulty tetrahedra.
 //!
-//! What is done to surfaces, in this order: vertices at the open borders of surfaces that lie together are welded; a
-//! border vertex that lies on another border edge (a T-seam) splits the triangle there; triangles without
-//! area and elements given twice are dropped, and vertices that nothing uses. Before and after, the exact
-//! judge counts the intersections. What intersects away from borders is left as it is: no weld would cure it.
+//! What is done to surfaces, in this order: vertices at the open borders of surfaces that lie together are
+//! welded; a border vertex that lies on another border edge (a T-seam) splits the triangle there; triangles
+//! without area and elements given twice are dropped, and vertices that nothing uses. Before and after, the
+//! exact judge counts the intersections. What intersects away from borders is left as it is: no weld would
+//! cure it.
 //!
-//! Polygons, texture coordinates and names of an OBJ stay with their faces. Corners that are welded keep their
-//! own texture coordinates and normals; a vertex on a T-seam gets texture coordinates between those of the
-//! edge.
+//! Polygons, texture coordinates and names of an OBJ stay with their faces. Corners that are welded keep
+//! their own texture coordinates and normals; a vertex on a T-seam gets texture coordinates between those of
+//! the edge.
 
 mod borders;
 mod clean;

@@ -8,9 +8,9 @@ use serde::Serialize;
 /// How a mesh is repaired.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RepairParams {
-    /// Border vertices, and any vertices of solids, nearer than this are welded [unit of the mesh]. Default: a
-    /// hundredth of the mean border edge; of solids a ten-thousandth of the mean edge. Larger: wider seams close, but more of the cloth is pulled together; keep it below the shortest
-    /// edge.
+    /// Border vertices, and any vertices of solids, nearer than this are welded [unit of the mesh]. Default:
+    /// a hundredth of the mean border edge; of solids a ten-thousandth of the mean edge. Larger: wider seams
+    /// close, but more of the cloth is pulled together; keep it below the shortest edge.
     pub weld_distance: Option<f64>,
     /// Whether all lines of a mesh of triangles or tetrahedra are dropped. Default false.
     pub drop_lines: bool,
@@ -38,7 +38,8 @@ pub struct RepairReport {
     pub repeated_triangles: usize,
     /// Polygons of an OBJ that were cut because triangles of them were dropped or split.
     pub cut_polygons: usize,
-    /// Strand edges dropped because they repeat another, have no length, or are lines that were to be dropped.
+    /// Strand edges dropped because they repeat another, have no length, or are lines that were to be
+    /// dropped.
     pub dropped_strands: usize,
     /// Strand edges that stay beside triangles. Those between triangles keep the mesh from being cloth.
     pub lines: usize,

@@ -19,7 +19,8 @@ impl Found {
     }
 }
 
-/// What was done to a tetrahedral mesh, beside what [`RepairReport`](super::RepairReport) counts for all meshes.
+/// What was done to a tetrahedral mesh, beside what [`RepairReport`](super::RepairReport) counts for all
+/// meshes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SolidRepair {
     /// Tetrahedra dropped because they name a vertex twice.
@@ -42,7 +43,8 @@ pub struct SolidRepair {
     pub triangles: Found,
     /// Tetrahedra whose smallest height is below a hundredth of their longest edge. They stay.
     pub thin: Found,
-    /// The smallest height over the longest edge of any tetrahedron, and the center of that [unit of the mesh].
+    /// The smallest height over the longest edge of any tetrahedron, and the center of that [unit of the
+    /// mesh].
     pub thinnest: Option<(f64, [f64; 3])>,
     /// Sum of the volumes of the tetrahedra before and after, each positive [unit of the mesh, cubed].
     pub volume: [f64; 2],

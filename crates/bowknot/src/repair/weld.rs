@@ -8,8 +8,9 @@ use std::collections::HashMap;
 /// Places that the report lists.
 const LISTED: usize = 10;
 
-/// Welds those of `vertices` nearer than `distance` [unit of the mesh], nearest pairs first; each group moves to its mean. Two
-/// vertices of one edge are never welded, neither directly nor through others: no edge collapses.
+/// Welds those of `vertices` nearer than `distance` [unit of the mesh], nearest pairs first; each group moves
+/// to its mean. Two vertices of one edge are never welded, neither directly nor through others: no edge
+/// collapses.
 pub(super) fn weld(mesh: &mut Mesh, vertices: &[u32], distance: f64, report: &mut RepairReport) {
     let points: Vec<(u32, Point)> = vertices.iter().map(|&v| (v, mesh.positions[v as usize])).collect();
     let mut groups = Groups::new(mesh);
@@ -91,7 +92,8 @@ impl Groups {
     }
 }
 
-/// Pairs of points nearer than `distance`, above 0, smaller index first, nearest pairs first. By a grid of cells of that size.
+/// Pairs of points nearer than `distance`, above 0, smaller index first, nearest pairs first. By a grid of
+/// cells of that size.
 fn near_pairs(points: &[(u32, Point)], distance: f64) -> Vec<(f64, u32, u32)> {
     // Saturates far away, which makes some cells larger.
     let cell = |p: &Point| [p.x, p.y, p.z].map(|c| (c / distance).floor() as i64);

@@ -1,4 +1,5 @@
-//! What computes a run, and the file `backends.json` that tells it, so that a resumption computes in the same way.
+//! What computes a run, and the file `backends.json` that tells it, so that a resumption computes in the same
+//! way.
 
 use crate::simulator::{CollisionBackend, Cpu};
 use bowknot_dynamics::NewtonBackend;

@@ -59,8 +59,8 @@ impl Checker {
         }
     }
 
-    /// Goes on after a time step at whose end obstacles may have appeared or vanished: the next path is then judged with
-    /// those that are there, from a start that is judged by itself.
+    /// Goes on after a time step at whose end obstacles may have appeared or vanished: the next path is then
+    /// judged with those that are there, from a start that is judged by itself.
     pub fn follow(&mut self, simulator: &Simulator) {
         if self.present != simulator.present() {
             self.judge = MotionJudge::new(simulator.judge());

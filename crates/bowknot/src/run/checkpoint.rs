@@ -228,8 +228,8 @@ fn yielding(archive: &mut Archive<'_>) -> Result<Vec<DistanceLimit>, IoError> {
     Ok(rows.into_iter().map(edge).collect())
 }
 
-/// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards them
-/// together, so that no array is of another checkpoint, or left out.
+/// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards
+/// them together, so that no array is of another checkpoint, or left out.
 fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
     let Checkpoint { step, positions, velocities, anchors, present, contacts, sleep, order } = checkpoint;
     let mut sum = Checksum(0);
@@ -264,7 +264,8 @@ fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
     sum.0.to_le_bytes()
 }
 
-/// A sum of words that depends on their order. Each step is one to one, so a single changed word always changes it.
+/// A sum of words that depends on their order. Each step is one to one, so a single changed word always
+/// changes it.
 struct Checksum(u64);
 
 impl Checksum {

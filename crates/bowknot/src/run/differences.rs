@@ -79,7 +79,8 @@ mod tests {
     fn every_difference_is_named_with_both_values() {
         let scene = |name: &str, delta: f64, pin: &str| {
             format!(
-                "{pin}\n[simulation]\nname = \"{name}\"\nframes = 3\n[contact]\ndelta = {delta}\n[[body]]\nscale = {delta}"
+                "{pin}\n[simulation]\nname = \"{name}\"\nframes = 3\n[contact]\ndelta = \
+                 {delta}\n[[body]]\nscale = {delta}"
             )
         };
         assert_eq!(differences(&scene("a", 0.5, ""), &scene("b", 0.5, "")), None);

@@ -39,7 +39,8 @@ impl Default for Rate {
 impl Rate {
     /// Frames from one that is taken to the next.
     fn stride(self, time_step: f64) -> Result<usize, String> {
-        /// Error of a number of time steps that is still whole: steps such as 1/96 s are written with few digits.
+        /// Error of a number of time steps that is still whole: steps such as 1/96 s are written with few
+        /// digits.
         const WHOLE: f64 = 1e-2;
         match self {
             Self::Every(0) => Err("of frames every 0 none is taken: give 1 or more".to_owned()),
@@ -53,7 +54,8 @@ impl Rate {
                 let below = steps.floor().max(1.0);
                 let rates = [below, below + 1.0].map(|stride| 1.0 / (stride * time_step));
                 Err(format!(
-                    "{rate} frames per second are none of its time steps of {time_step} s: it has {:.6} per second, {:.6} in \
+                    "{rate} frames per second are none of its time steps of {time_step} s: it has {:.6} per \
+                     second, {:.6} in \
                      every {} and {:.6} in every {}; run it with a time step that divides 1/{rate} s",
                     1.0 / time_step,
                     rates[0],
@@ -79,8 +81,8 @@ pub struct Exported {
 /// differ in positions only, or of an NPZ archive. `progress` hears the frames done and their number.
 ///
 /// Frames are taken from PLY files if there are any, then OBJ, then `frames.npz`; the archive is the only one
-/// that is held in memory. What modeling tools say about faces comes from the run's `surface` folder, else from
-/// the first OBJ frame.
+/// that is held in memory. What modeling tools say about faces comes from the run's `surface` folder, else
+/// from the first OBJ frame.
 ///
 /// # Errors
 /// No frames, frames whose elements differ, no time step, formats that would overwrite what is read; files

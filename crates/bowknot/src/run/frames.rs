@@ -85,8 +85,8 @@ impl FrameWriter {
         self.spool.as_ref().map_or(Ok(()), |spool| spool.write(frame, positions))
     }
 
-    /// Writes the first frame for those who export frames of formats that do not hold all that the layout says
-    /// about faces, if it does.
+    /// Writes the first frame for those who export frames of formats that do not hold all that the layout
+    /// says about faces, if it does.
     pub fn write_surface(&self, positions: &[Point]) -> Result<(), IoError> {
         if !self.layout.has_surface() {
             return Ok(());

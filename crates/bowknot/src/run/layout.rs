@@ -91,9 +91,9 @@ impl Layout {
         self.surface.is_some()
     }
 
-    /// The world's positions, those inside of solids left out, and the corners of the quads. Obstacles and half-spaces that
-    /// are not `present` (one entry per body, then per half-space) have all their vertices at their first one's place: they
-    /// keep their elements, of which nothing is seen.
+    /// The world's positions, those inside of solids left out, and the corners of the quads. Obstacles and
+    /// half-spaces that are not `present` (one entry per body, then per half-space) have all their vertices
+    /// at their first one's place: they keep their elements, of which nothing is seen.
     pub fn with_corners(&self, positions: &[Point], present: &[bool]) -> Vec<Point> {
         let collide = self.obstacle.len() - self.corners.len();
         let mut all = [&positions[..collide], &self.corners].concat();

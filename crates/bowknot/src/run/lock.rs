@@ -1,8 +1,8 @@
 //! One run at a time in a folder.
 //!
-//! The lock is the operating system's, on the file `checkpoint/lock`. It ends with the process, however that ends: a
-//! killed run leaves the file, but not the lock, and nothing is in the way of `--resume`. The file stays, because
-//! removing it would let a second run lock the removed file while a third makes another.
+//! The lock is the operating system's, on the file `checkpoint/lock`. It ends with the process, however that
+//! ends: a killed run leaves the file, but not the lock, and nothing is in the way of `--resume`. The file
+//! stays, because removing it would let a second run lock the removed file while a third makes another.
 
 use crate::simulator::SimulationError;
 use bowknot_io::{IoError, create_folder};

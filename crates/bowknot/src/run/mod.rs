@@ -72,12 +72,13 @@ pub struct Outcome {
     pub warnings: Vec<String>,
 }
 
-/// Runs a scene to its last frame on the CPU. `progress` is called before the first time step and after each, and every
-/// second within one that takes longer than two; `Break` ends the run there, and abandons a time step that is not done.
+/// Runs a scene to its last frame on the CPU. `progress` is called before the first time step and after each,
+/// and every second within one that takes longer than two; `Break` ends the run there, and abandons a time
+/// step that is not done.
 ///
 /// # Errors
-/// Whatever [`Simulator::new`] and [`Simulator::step`] refuse; a folder that cannot be written, holds a
-/// run already, is in use by another run, or cannot be resumed. A panic of any thread, `progress` included, is
+/// Whatever [`Simulator::new`] and [`Simulator::step`] refuse; a folder that cannot be written, holds a run
+/// already, is in use by another run, or cannot be resumed. A panic of any thread, `progress` included, is
 /// [`SimulationError::Internal`]. Frames written so far stay.
 pub fn run(
     scene: &Scene,

@@ -1,7 +1,8 @@
 //! The checkpoints in the folder of a run: the last one, and the one before it.
 //!
-//! A new checkpoint is written as a whole under a third name. Only then is the last one renamed to the previous, and
-//! the new one to the last. So at any moment one whole checkpoint exists, and two from the second one on.
+//! A new checkpoint is written as a whole under a third name. Only then is the last one renamed to the
+//! previous, and the new one to the last. So at any moment one whole checkpoint exists, and two from the
+//! second one on.
 
 use crate::simulator::Checkpoint;
 use bowknot_errors::counted;
@@ -42,7 +43,8 @@ impl Saved {
             let path = path.to_owned();
             move |source| IoError::system("write", &path, source)
         };
-        // After a resumption from an earlier checkpoint the last one is damaged, and the previous one is sound.
+        // After a resumption from an earlier checkpoint the last one is damaged, and the previous one is
+        // sound.
         if last.exists() && self.step.is_some() {
             fs::rename(&last, &previous).map_err(system(&previous))?;
         }
@@ -51,8 +53,8 @@ impl Saved {
         Ok(())
     }
 
-    /// The last checkpoint that can be read; none if there is no file of one. Says in the log if an older one is
-    /// taken because of damage.
+    /// The last checkpoint that can be read; none if there is no file of one. Says in the log if an older one
+    /// is taken because of damage.
     ///
     /// # Errors
     /// No file can be read; what is wrong with the last one.

@@ -65,9 +65,9 @@ impl FailureWatch {
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// The smallest state that shows what the run of the scene failed of: `error` if it ended with one, else an
-    /// intersection that the judge found, else the first time step that did not converge. None if it did not fail, or
-    /// of something that is no state, such as a file.
+    /// The smallest state that shows what the run of the scene failed of: `error` if it ended with one, else
+    /// an intersection that the judge found, else the first time step that did not converge. None if it did
+    /// not fail, or of something that is no state, such as a file.
     pub fn smallest(
         &self,
         scene: &Scene,

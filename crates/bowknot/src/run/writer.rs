@@ -97,7 +97,8 @@ impl RunWriter {
     /// # Errors
     /// A folder that holds a run already or cannot be written.
     pub fn create(folder: &Path, scene: &Scene, simulator: &Simulator) -> Result<Self, SimulationError> {
-        // A folder that another run writes to is said to be in use; one that holds anything else gets no lock file.
+        // A folder that another run writes to is said to be in use; one that holds anything else gets no lock
+        // file.
         let held = folder.join(LOCK).exists().then(|| Lock::take(folder)).transpose()?;
         refuse_run(folder)?;
         let lock = held.map_or_else(|| Lock::take(folder), Ok)?;
@@ -122,8 +123,8 @@ impl RunWriter {
         Ok(writer)
     }
 
-    /// Continues the run of a folder: restores the simulator to its checkpoint, or to the one before it if that
-    /// is damaged, and drops the statistics of later time steps, whose frames will be written again.
+    /// Continues the run of a folder: restores the simulator to its checkpoint, or to the one before it if
+    /// that is damaged, and drops the statistics of later time steps, whose frames will be written again.
     ///
     /// # Errors
     /// A folder without a run, a run of another scene, a damaged checkpoint.
@@ -296,7 +297,8 @@ impl RunWriter {
     }
 }
 
-/// Refuses a folder that holds a run. Empty folders are what a run leaves that was killed at its very beginning.
+/// Refuses a folder that holds a run. Empty folders are what a run leaves that was killed at its very
+/// beginning.
 ///
 /// # Errors
 /// [`SimulationError::RunExists`].
@@ -314,8 +316,8 @@ pub fn refuse_run(folder: &Path) -> Result<(), SimulationError> {
     }
 }
 
-/// Removes the temporary files of a run that was killed. They have the number of its process in their names; those of
-/// others may be in use.
+/// Removes the temporary files of a run that was killed. They have the number of its process in their names;
+/// those of others may be in use.
 fn remove_leftovers(folder: &Path, process: Option<u32>) {
     let Some(process) = process.filter(|&process| process != std::process::id()) else { return };
     let of_process = format!(".{process}-");

@@ -11,8 +11,8 @@ pub trait CollisionBackend: Debug + Send {
     /// What `summary.json` calls it.
     fn name(&self) -> String;
 
-    /// Prepares for a scene. `home` are the positions that the scene begins with [m]; results depend on them, but
-    /// not on the positions that a run is resumed from.
+    /// Prepares for a scene. `home` are the positions that the scene begins with [m]; results depend on them,
+    /// but not on the positions that a run is resumed from.
     ///
     /// # Errors
     /// Settings of the scene that the backend does not have.
@@ -35,8 +35,8 @@ pub trait CollisionBackend: Debug + Send {
     /// How far positions may be off because the backend rounds them [m].
     fn resolution(&self) -> f64;
 
-    /// Seconds of the last call in which a device computed, by time stamps of its own: [`Statistics::seconds`] then has
-    /// them by stage. None for the CPU and where they are not measured.
+    /// Seconds of the last call in which a device computed, by time stamps of its own:
+    /// [`Statistics::seconds`] then has them by stage. None for the CPU and where they are not measured.
     fn device_seconds(&self) -> Option<f64> {
         None
     }
@@ -60,9 +60,9 @@ pub trait CollisionBackend: Debug + Send {
         observer: &mut dyn Observer,
     ) -> Result<Statistics, BackendError>;
 
-    /// Judges the positions [m] that calls of [`Self::resolve`] have led to, before they are accepted: at the end of each
-    /// time step. A backend whose arithmetic is not that of this program, such as a device with its driver, looks for
-    /// intersections then. Others have nothing to do.
+    /// Judges the positions [m] that calls of [`Self::resolve`] have led to, before they are accepted: at the
+    /// end of each time step. A backend whose arithmetic is not that of this program, such as a device with
+    /// its driver, looks for intersections then. Others have nothing to do.
     ///
     /// # Errors
     /// The positions intersect, or cannot be judged. The time step is then taken back.

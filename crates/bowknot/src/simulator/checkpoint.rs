@@ -1,6 +1,6 @@
 //! All that a simulation must remember between two time steps.
 
-use super::contacts::CarriedContacts;
+use super::contact_forces::CarriedContacts;
 use super::sleep::SleepState;
 use bowknot_geometry::{Point, Vector};
 

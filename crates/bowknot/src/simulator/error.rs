@@ -1,6 +1,7 @@
 //! Why a simulation cannot begin or go on.
 
-use super::waits::element_words;
+use super::backend::BackendError;
+use super::report::element_words;
 use bowknot_check::{CheckError, Intersection};
 use bowknot_dynamics::{Errors, ParamError, StepError};
 use bowknot_errors::counted;
@@ -11,8 +12,8 @@ use bowknot_twoway::ResolveError;
 use std::path::PathBuf;
 
 /// Why a simulation cannot begin or go on. All but [`SimulationError::Interrupted`] and
-/// [`SimulationError::Internal`] are the user's input or an unwritable output (exit code 2 of the command); that
-/// a check found an intersection is no error but a result, see [`crate::run::Summary::intersections`].
+/// [`SimulationError::Internal`] are the user's input or an unwritable output (exit code 2 of the command);
+/// that a check found an intersection is no error but a result, see [`crate::run::Summary::intersections`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -86,7 +87,8 @@ pub enum SimulationError {
     },
     /// The program itself failed within a run.
     #[error(
-        "time step {step}: internal error: {message}\nThis is a fault of the program, please report it. What was written \
+        "time step {step}: internal error: {message}\nThis is a fault of the program, please report it. What \
+         was written \
          so far is whole; --resume goes on from the last checkpoint."
     )]
     Internal {
@@ -116,6 +118,24 @@ impl SimulationError {
                 Self::Backend { step, source: Box::new(source) }
             }
             source => Self::Target { step, source },
+        }
+    }
+
+    /// A collision problem that is refused, with the name of its body.
+    pub(super) fn resolve(world: &World, step: usize, source: ResolveError) -> Self {
+        let body = match &source {
+            ResolveError::NonFinite { body, .. } | ResolveError::Mass { body, .. } => world.name_of(*body),
+            ResolveError::MinSeparationBelowRounding { vertex, .. } => world.body_name(*vertex),
+            _ => "",
+        };
+        Self::Resolve { step, body: body.to_owned(), source }
+    }
+
+    /// A collision problem that a backend did not resolve.
+    pub(super) fn backend(world: &World, step: usize, source: BackendError) -> Self {
+        match source {
+            BackendError::Refused(source) => Self::resolve(world, step, source),
+            BackendError::Failed(source) => Self::Backend { step, source },
         }
     }
 }
@@ -164,8 +184,8 @@ fn resolve_message(error: &ResolveError, body: &str) -> String {
     match error {
         ResolveError::MinSeparationBelowRounding { min_separation, coordinate, needed, .. } => format!(
             "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate \
-             ({coordinate:.3e} m, body {body}): move the scene closer to the origin, or set contact.min_separation above \
-             {needed:.3e} m"
+             ({coordinate:.3e} m, body {body}): move the scene closer to the origin, or set \
+             contact.min_separation above {needed:.3e} m"
         ),
         ResolveError::NonFinite { what, vertex, .. } => {
             format!("{what} of vertex {vertex} (body {body}) is not finite")

@@ -1,15 +1,17 @@
 //! Bodies whose time step is solved while that of others goes on.
 //!
-//! Connected bodies that touch neither directly nor through others do not depend on each other. Each such group ends its
-//! iterations by its own residual: from then on the dynamics has its vertices as prescribed, where they are. A contact that is found
-//! later joins two groups, and what had ended goes on. Otherwise the iterations of one body would go on as long as those of any
-//! other, however far away. The collision stage moves all bodies as ever; those that are finished are at their targets.
+//! Connected bodies that touch neither directly nor through others do not depend on each other. Each such
+//! group ends its iterations by its own residual: from then on the dynamics has its vertices as prescribed,
+//! where they are. A contact that is found later joins two groups, and what had ended goes on. Otherwise the
+//! iterations of one body would go on as long as those of any other, however far away. The collision stage
+//! moves all bodies as ever; those that are finished are at their targets.
 
 use super::tolerance::Tolerance;
 use bowknot_dynamics::{DynamicsModel, RepulsionSpring};
 use bowknot_geometry::{Point, UnionFind};
 
-/// Which vertices of a world are prescribed in an iteration, and where they end, with bodies that are finished among them.
+/// Which vertices of a world are prescribed in an iteration, and where they end, with bodies that are
+/// finished among them.
 #[derive(Debug, Default)]
 pub(super) struct Finished {
     /// Connected component of each vertex; `u32::MAX` for those of obstacles. Empty before it is needed.
@@ -37,9 +39,10 @@ impl Finished {
         self.held.clone_from(&self.prescribed);
     }
 
-    /// Notes which groups are finished, by the `residuals` of connected components [m], where `springs` may act. A component goes
-    /// on if not all of its vertices are `counted`: what rows alone hold has no residual.
-    pub fn note(
+    /// Updates which groups are finished, by the `residuals` of connected components [m], where `springs` may
+    /// act. A component goes on if not all of its vertices are `counted`: what rows alone hold has no
+    /// residual.
+    pub fn update(
         &mut self,
         model: &DynamicsModel,
         residuals: &[f64],
@@ -130,7 +133,7 @@ mod tests {
         };
         let mut finished = Finished::default();
         finished.begin(&[true, false, false, false, false, false, false, false, false]);
-        finished.note(&model, &by_component, &counted, &[spring], Tolerance::new(1.0, 0.01));
+        finished.update(&model, &by_component, &counted, &[spring], Tolerance::new(1.0, 0.01));
         finished.held().to_vec()
     }
 

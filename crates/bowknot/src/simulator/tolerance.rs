@@ -10,8 +10,8 @@ pub(super) struct Tolerance(f64);
 impl Tolerance {
     /// In a time step of `dt` [s], with the `tolerance` in one of 1/100 s [m].
     ///
-    /// In shorter time steps it shrinks with their square, as what gravity does: else it would be an acceleration without bound.
-    /// In longer ones it grows with them: a constant error of velocities.
+    /// In shorter time steps it shrinks with their square, as what gravity does: else it would be an
+    /// acceleration without bound. In longer ones it grows with them: a constant error of velocities.
     pub fn new(tolerance: f64, dt: f64) -> Self {
         let ratio = dt / REFERENCE_STEP;
         Self(tolerance * ratio.min(ratio * ratio))

@@ -3,8 +3,9 @@ use bowknot::geometry::Vector;
 use bowknot::proximity::{PairList, ProximitySearch};
 use bowknot::{Scene, Simulator};
 
-const SHEET: &str = "[[body]]\nname = \"sheet\"\nshape = { type = \"sheet\", size = [0.3, 0.3], edge = 0.05 }\n\
-    translate = [0, 0, 0.01]\n";
+const SHEET: &str = "[[body]]\nname = \"sheet\"\nshape = \
+                     { type = \"sheet\", size = [0.3, 0.3], edge = 0.05 }\n\
+                     translate = [0, 0, 0.01]\n";
 
 const FAR: &str = "[[body]]\nname = \"far\"\nshape = { type = \"sheet\", size = [0.3, 0.3], edge = 0.05 }\n\
     translate = [3, 0, 2]\n";
@@ -15,8 +16,8 @@ fn simulator(text: &str) -> Simulator {
     Simulator::new(&scene(text)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Far from all others there is no row and no pair in range. In fast flight the search lists pairs of the sheet
-/// with itself, because trust regions grow with the way, and a step ends at their border.
+/// Far from all others there is no row and no pair in range. In fast flight the search lists pairs of the
+/// sheet with itself, because trust regions grow with the way, and a step ends at their border.
 #[test]
 fn a_body_in_flight_takes_no_part_in_collisions() {
     let mut flying = simulator(FAR);

@@ -40,13 +40,13 @@ fn keys_of_bodies_are_refused_one_by_one() {
         ),
         (
             "material = \"sand\"",
-            "2: body[0].material: the string \"sand\" must be one of cotton, wool, wool-lycra, polyester, silk, \
-             denim; that is a material of kind particles",
+            "2: body[0].material: the string \"sand\" must be one of cotton, wool, wool-lycra, polyester, \
+             silk, denim; that is a material of kind particles",
         ),
         (
             "material = { base = \"cottn\" }",
-            "2: body[0].material.base: the string \"cottn\" must be one of cotton, wool, wool-lycra, polyester, \
-             silk, denim; did you mean cotton?",
+            "2: body[0].material.base: the string \"cottn\" must be one of cotton, wool, wool-lycra, \
+             polyester, silk, denim; did you mean cotton?",
         ),
         ("kind = \"solid\"", "3: body[0].shape: makes a body of kind cloth, but this one is of kind solid"),
     ] {
@@ -88,7 +88,8 @@ fn keys_of_obstacles_pins_and_pairs_are_refused_one_by_one() {
             "contact.friction_pairs[0].friction: -2 must be finite",
         ),
         (
-            "[[contact.friction_pairs]]\nbodies = [\"a\", \"a\"]\n[[contact.friction_pairs]]\nbodies = [\"a\", \"a\"]",
+            "[[contact.friction_pairs]]\nbodies = [\"a\", \"a\"]\n[[contact.friction_pairs]]\nbodies = \
+             [\"a\", \"a\"]",
             "contact.friction_pairs[1].bodies: the pair is named by an entry above",
         ),
         ("[solver.repulsion]\nstiffness = -1", "solver.repulsion.stiffness: -1 must be finite"),
@@ -125,8 +126,8 @@ fn lines_that_lead_nowhere_are_left_out_of_cloth_and_those_to_sew_along_are_refu
     }
     let sewing = format!("{cloth}l 7 8\nl 2 4\nl 3 6\n");
     let message = with_mesh("cloth", "mesh.obj", &sewing).expect_err("refused");
-    let expected = "scene.toml:4: body it: the mesh has 2 lines between vertices of its triangles, the first joins vertices 1 and 3: \
-                    other programs sew";
+    let expected = "scene.toml:4: body it: the mesh has 2 lines between vertices of its triangles, the first \
+                    joins vertices 1 and 3: other programs sew";
     assert!(message.starts_with(expected) && message.contains("drop_lines = true"), "{message}");
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("mesh.obj"), sewing).expect("a mesh");
@@ -206,14 +207,16 @@ fn strands_with_repeated_points_are_listed() {
     let message = with_mesh("strands", "mesh.obj", mesh).expect_err("refused");
     assert_eq!(
         message,
-        "scene.toml:4: body it: 3 strand edges are faulty: edge 0 joins vertices 1 and 2, both at (0, 0, 0), edge 2 joins \
-         vertices 3 and 4, both at (1, 0, 0), edge 3 repeats edge 1 (vertices 3, 2); merge repeated points"
+        "scene.toml:4: body it: 3 strand edges are faulty: edge 0 joins vertices 1 and 2, both at (0, 0, 0), \
+         edge 2 joins vertices 3 and 4, both at (1, 0, 0), edge 3 repeats edge 1 (vertices 3, 2); merge \
+         repeated points"
     );
 }
 
 /// A Gmsh file of tetrahedra.
 fn msh(tets: &[[usize; 4]]) -> String {
-    let nodes = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 0\n\
+    let nodes = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 \
+                 0\n\
                  $EndNodes\n";
     let element = |(k, [a, b, c, d]): (usize, &[usize; 4])| format!("{} 4 2 0 1 {a} {b} {c} {d}\n", k + 1);
     let elements: String = tets.iter().enumerate().map(element).collect();
@@ -240,7 +243,8 @@ fn overlapping_and_flat_tetrahedra_are_listed() {
 #[test]
 fn bodies_that_begin_in_each_other_are_named() {
     let text = "[[body]]\nname = \"cube\"\nkind = \"solid\"\nshape = \"block\"\n\
-                [[body]]\nname = \"hair\"\nkind = \"strands\"\nshape = \"strands\"\ntranslate = [0.003, 0.004, 0.25]\n";
+                [[body]]\nname = \"hair\"\nkind = \"strands\"\nshape = \"strands\"\ntranslate = [0.003, \
+                0.004, 0.25]\n";
     let message = refusal(text);
     assert!(
         message.contains("of hair and triangle (vertices") && message.contains("of cube at ("),
@@ -273,7 +277,8 @@ fn a_sequence_must_keep_its_topology() {
     let message = run().expect_err("other triangles");
     assert_eq!(
         message,
-        "scene.toml:5: /frames/11.obj: joins its vertices to other triangles than /frames/2.obj; a sequence keeps its topology"
+        "scene.toml:5: /frames/11.obj: joins its vertices to other triangles than /frames/2.obj; a sequence \
+         keeps its topology"
     );
     write("11.obj", 3, &[[0, 1, 2]]);
     let message = run().expect_err("other vertices");

@@ -45,7 +45,8 @@ fn meshes_are_refused_by_name_and_place() {
         ),
         (
             format!("{SQUARE}f 1 2 3\nf 1 3 4\nl 2 4\n"),
-            "scene.toml:3: body cloth: the mesh has 1 line between vertices of its triangles, the first joins vertices 1 and 3",
+            "scene.toml:3: body cloth: the mesh has 1 line between vertices of its triangles, the first \
+             joins vertices 1 and 3",
         ),
     ] {
         let message = mesh(&content, false).expect_err("refused");
@@ -77,8 +78,8 @@ fn loose_vertices_and_degenerate_obstacle_triangles_are_dropped_with_a_warning()
 
 #[test]
 fn polygons_of_obstacles_lose_the_triangles_that_are_dropped() {
-    // Two corners of the pentagon are at one place. So the first triangle of its fan has no area, and its second vertex no other
-    // triangle.
+    // Two corners of the pentagon are at one place. So the first triangle of its fan has no area, and its
+    // second vertex no other triangle.
     let pentagon = format!("{SQUARE}v 1 0 0\nvt 0 1\nvt 1 0\nusemtl wood\nf 1/1 2 5/2 3 4\n");
     let world = mesh(&pentagon, true).expect("a world");
     let thing = &world.bodies[1];
@@ -150,7 +151,8 @@ fn a_start_that_intersects_names_bodies_and_places() {
     let (world, report) = Simulator::start_intersections(&scene(text)).expect("a report");
     assert_eq!(report.intersections.len(), *count);
     assert_eq!(world.bodies[1].name, "ball");
-    let below = "[[body]]\nname = \"sheet\"\nshape = \"sheet\"\n[[obstacle]]\nname = \"ground\"\nshape = \"half-space\"\n";
+    let below = "[[body]]\nname = \"sheet\"\nshape = \"sheet\"\n[[obstacle]]\nname = \"ground\"\nshape \
+                 = \"half-space\"\n";
     assert!(refusal(below).contains("vertex 0 of sheet and half-space ground at"), "{}", refusal(below));
 }
 

@@ -52,7 +52,8 @@ const GROUND: &str = "[[obstacle]]\nname = \"ground\"\nshape = \"half-space\"\n"
 fn a_block_comes_to_rest_on_the_ground() {
     let mut simulator = simulator(&format!(
         "[[body]]\nname = \"block\"\nkind = \"solid\"\nmaterial = \"jelly\"\nvelocity = [0, 0, -1]\n\
-         shape = {{ type = \"block\", size = [0.2, 0.2, 0.2], edge = 0.05 }}\ntranslate = [0, 0, 0.12]\n{GROUND}"
+         shape = {{ type = \"block\", size = [0.2, 0.2, 0.2], edge = 0.05 }}\ntranslate = [0, 0, \
+         0.12]\n{GROUND}"
     ));
     let info = simulator.world().info(0.01);
     assert_eq!((info.vertices, info.tets, info.obstacle_vertices), (125, 384, 0));
@@ -306,7 +307,8 @@ fn rubber_on_a_slope(friction: f64, repulsion: f64) -> (f64, f64, f64) {
          [[body]]\nname = \"block\"\nkind = \"solid\"\nmaterial = \"rubber\"\nfriction = {friction}\n\
          shape = {{ type = \"block\", size = [0.2, 0.2, 0.05], edge = 0.025 }}\n\
          rotate = [0, 21.801, 0]\ntranslate = [0.00994, 0, 0.02484]\n\
-         [[obstacle]]\nname = \"slope\"\nshape = \"half-space\"\nrotate = [0, 21.801, 0]\nfriction = {friction}\n"
+         [[obstacle]]\nname = \"slope\"\nshape = \"half-space\"\nrotate = [0, 21.801, 0]\nfriction = \
+         {friction}\n"
     ));
     let mass = simulator.dynamics_model().total_mass();
     let start = simulator.dynamics_model().center_of_mass(simulator.positions());
@@ -415,7 +417,8 @@ fn energy_grows_by_what_the_collision_stage_puts_in_and_no_more() {
 
 #[test]
 fn initial_velocities_turn_a_body_as_a_whole() {
-    let text = "[simulation]\ngravity = [0, 0, 0]\n[[body]]\nkind = \"solid\"\nmaterial = \"jelly\"\nangular_velocity = [0, 0, 90]\n\
+    let text = "[simulation]\ngravity = [0, 0, 0]\n[[body]]\nkind = \"solid\"\nmaterial \
+                = \"jelly\"\nangular_velocity = [0, 0, 90]\n\
                 velocity = [1, 0, 0]\nshape = { type = \"tet-ball\", radius = 0.1, edge = 0.05 }\n\
                 translate = [0, 0, 3]\n";
     let mut simulator = simulator(text);

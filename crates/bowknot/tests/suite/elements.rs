@@ -6,7 +6,8 @@ use bowknot::World;
 use bowknot::geometry::{Point, Vector};
 use std::fmt::Write;
 
-/// A cantilever of soft rubber, 20 cm long, `across` elements of `side` [m] wide and high, with more keys of the body.
+/// A cantilever of soft rubber, 20 cm long, `across` elements of `side` [m] wide and high, with more keys of
+/// the body.
 fn cantilever(side: f64, edge: f64, keys: &str) -> String {
     format!(
         "simulation = {{ dt = 0.02 }}\n[[body]]\nname = \"beam\"\nkind = \"solid\"\n{keys}\n\
@@ -107,7 +108,8 @@ fn a_thin_mesh_is_named_and_keeps_its_vertices() {
     let quadratic = world(", elements = \"quadratic\"");
     assert!(quadratic.warnings.iter().all(|w| !w.contains("thick")), "{:?}", quadratic.warnings);
     assert_eq!((quadratic.bodies[0].tets.len(), quadratic.bodies[0].quadratic_tets.len()), (384, 48));
-    // Vertices keep their numbers, in pins and in messages. A pin holds the middles of edges whose ends it names.
+    // Vertices keep their numbers, in pins and in messages. A pin holds the middles of edges whose ends it
+    // names.
     let pinned: Vec<Point> =
         quadratic.pins[0].vertices.iter().map(|&v| quadratic.positions[v as usize]).collect();
     assert!(pinned.len() == 9 && pinned.iter().all(|p| p.x == 0.0), "{pinned:?}");

@@ -1,9 +1,10 @@
-//! The same bits on every machine with x86-64, on any number of threads, with and without statistics, in debug and
-//! release builds: hashes of five scenes of all kinds of bodies.
+//! The same bits on every machine with x86-64, on any number of threads, with and without statistics, in
+//! debug and release builds: hashes of five scenes of all kinds of bodies.
 //!
-//! `golden.txt` has the accepted hashes; `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot --all-features golden` writes those of this
-//! machine. They change with every change of the solver that rounds differently. A hash that differs on one machine
-//! only is a bug: a function of the system, or code that depends on the processor.
+//! `golden.txt` has the accepted hashes; `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot --all-features
+//! golden` writes those of this machine. They change with every change of the solver that rounds differently.
+//! A hash that differs on one machine only is a bug: a function of the system, or code that depends on the
+//! processor.
 
 use bowknot::{Scene, Simulator};
 use std::path::Path;
@@ -12,8 +13,8 @@ use std::path::Path;
 const SCENES: [(&str, f64, usize); 5] =
     [("needle", 0.15, 16), ("dress", 0.08, 8), ("mat", 0.1, 60), ("hair", 0.05, 40), ("sand", 0.1, 40)];
 
-/// The hash of a scene's positions and velocities after its last time step. Statistics that are measured and those
-/// that are not must be the same to the simulation.
+/// The hash of a scene's positions and velocities after its last time step. Statistics that are measured and
+/// those that are not must be the same to the simulation.
 fn hash((name, scale, frames): (&str, f64, usize), threads: usize, measured: bool) -> u64 {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {

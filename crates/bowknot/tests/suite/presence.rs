@@ -40,7 +40,8 @@ fn simulator(text: &str) -> Simulator {
     Simulator::new(&scene(text)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A time step, whose end is judged with the obstacles that were there in it and with those that are there after it.
+/// A time step, whose end is judged with the obstacles that were there in it and with those that are there
+/// after it.
 fn step(simulator: &mut Simulator) -> StepStatistics {
     let before = simulator.judge();
     let statistics = simulator.step().unwrap_or_else(|error| panic!("{error}"));
@@ -181,7 +182,8 @@ fn what_is_cut_or_too_near_is_named() {
         let mut simulator = simulator(&text);
         step(&mut simulator).absent.remove("x").flatten().unwrap_or_default()
     };
-    let sheet = "[[obstacle]]\nname = \"x\"\nrotate = [90, 0, 0]\nshape = { type = \"sheet\", size = [0.3, 0.3], edge = 0.1 }\n";
+    let sheet = "[[obstacle]]\nname = \"x\"\nrotate = [90, 0, 0]\nshape = \
+                 { type = \"sheet\", size = [0.3, 0.3], edge = 0.1 }\n";
     let cut = wait(0.5, sheet);
     assert!(cut.starts_with("it would cut cloth at (") && cut.contains(", 0.000000, 0.500000) m"), "{cut}");
     let plane = "[[obstacle]]\nname = \"x\"\nshape = \"half-space\"\n";
@@ -199,7 +201,8 @@ fn what_is_cut_or_too_near_is_named() {
 
 #[test]
 fn an_obstacle_does_not_appear_inside_of_a_solid() {
-    let inner = "[[obstacle]]\nname = \"seed\"\nshape = { type = \"ball\", radius = 0.02, edge = 0.02 }\nappears = 0.01\n";
+    let inner = "[[obstacle]]\nname = \"seed\"\nshape = \
+                 { type = \"ball\", radius = 0.02, edge = 0.02 }\nappears = 0.01\n";
     let mut simulator =
         simulator(&format!("[simulation]\ngravity = [0, 0, 0]\n{}{inner}", cube("cube", 0.0, 0.0)));
     let words = step(&mut simulator).absent.remove("seed").flatten();
@@ -270,7 +273,8 @@ fn plate(z: f64) -> (Vec<Point>, [[u32; 3]; 2]) {
 
 fn with_sequence(folder: &Path, sequence: &str) -> Scene {
     let text = format!(
-        "simulation.frames = 60\n{}[[obstacle]]\nname = \"plate\"\nsequence = \"{sequence}\"\nsequence_rate = 20\nsequence_start = 0.02\n",
+        "simulation.frames = 60\n{}[[obstacle]]\nname = \"plate\"\nsequence = \"{sequence}\"\nsequence_rate \
+         = 20\nsequence_start = 0.02\n",
         cloth(0.5)
     );
     Scene::from_toml(&text, folder).expect("a scene")
@@ -293,7 +297,8 @@ fn an_obstacle_is_not_there_during_empty_frames() {
         assert!(stack.push(if is_empty { &nothing } else { &positions }));
         let path = |ending: &str| frames.join(format!("{frame}.{ending}"));
         let header = "ply\nformat ascii 1.0\nelement vertex 0\nproperty double x\nproperty double y\n\
-                      property double z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n";
+                      property double z\nelement face 0\nproperty list uchar int \
+                      vertex_indices\nend_header\n";
         match frame {
             0 | 5 => fs::write(path("obj"), "# exported\no Plate\n").expect("a frame"),
             1 => fs::write(path("ply"), header).expect("a frame"),

@@ -1,7 +1,8 @@
 use bowknot::check::StateOptions;
 use bowknot::{Scene, Simulator};
 
-/// What a run did: Newton iterations, two-way steps, and the height of the center of mass after each time step.
+/// What a run did: Newton iterations, two-way steps, and the height of the center of mass after each time
+/// step.
 struct Course {
     iterations: usize,
     steps: usize,

@@ -62,12 +62,17 @@ const SOURCES: [&str; 36] = [
 const HEAD: &str = "\
 # Scene reference
 
-A scene is a TOML file. Every key has a default but the meshes; unknown keys are refused. Units stand in their own
-column: 1 is a plain number. Lengths are in meters, z is up. `--set KEY.PATH=VALUE` overrides a key of a file or of a
-built-in scene; an entry of `body`, `obstacle` or `pin` is named by its index from 0 or by its `name`:
+A scene is a TOML file. Every key has a default but the meshes; unknown keys are refused. \
+Units stand in \
+their own
+column: 1 is a plain number. Lengths are in meters, z is up. `--set KEY.PATH=VALUE` overrides a \
+key of a file or of a
+built-in scene; an entry of `body`, `obstacle` or `pin` is named by its index from 0 \
+or by its `name`:
 `--set body.sheet.material=silk`.
 
-This page is made from the documentation of the structs; `BOWKNOT_ACCEPT=1 cargo test --release --workspace reference`
+This page is made from the documentation of the \
+structs; `BOWKNOT_ACCEPT=1 cargo test --release --workspace reference`
 writes it anew.
 ";
 
@@ -306,8 +311,9 @@ fn page() -> String {
 
     page.section(
         "[contact]",
-        "Contact and stretch limits. `preset` sets the defaults of this table, of `[solver.backward]`, `[solver.forward]` \
-         and `[solver.stop]`: `fast`, the default, `quick` or `paper`, the method as the paper describes it. The column \
+        "Contact and stretch limits. `preset` sets the defaults of this table, of `[solver.backward]`, \
+         `[solver.forward]` and `[solver.stop]`: `fast`, the default, `quick` or `paper`, the method as the \
+         paper describes it. The column \
          `paper` has its values where they differ.",
     );
     let _ =
@@ -315,7 +321,8 @@ fn page() -> String {
     page.head(true);
     let _ = writeln!(
         page.text,
-        "| `preset` | name |  | `\"fast\"` | `\"paper\"` | Set of defaults. One of `fast`, `quick`, `paper`. |"
+        "| `preset` | name |  | `\"fast\"` | `\"paper\"` | Set of defaults. One of `fast`, `quick`, `paper`. \
+         |"
     );
     let (fast, paper) = (Params::fast(), Params::paper());
     page.rows::<ContactParams>("ContactParams", &fast.contact, Some(&paper.contact), all);
@@ -368,8 +375,9 @@ fn page() -> String {
     page.rows("BodySpec", &BodySpec::default(), None, all);
     page.section(
         "body.material",
-        "A material of the body's kind by name, or a table: `base` names the one that the numbers left out come from \
-         (for a cloth `fabric` does as well). The defaults are those of the kind's first material.",
+        "A material of the body's kind by name, or a table: `base` names the one that the numbers left out \
+         come from (for a cloth `fabric` does as well). The defaults are those of the kind's first \
+         material.",
     );
     let names = |kind: BodyKind| {
         let names: Vec<String> = kind.materials().iter().map(|name| format!("`{name}`")).collect();
@@ -401,8 +409,8 @@ fn page() -> String {
 
     page.section(
         "motion of obstacles and pins",
-        "x -> center + R (x - center) + translate, R the rotation about `axis` by `spin` times the time plus the \
-         keyframes' `angle`. Without a motion things stay where they are.",
+        "x -> center + R (x - center) + translate, R the rotation about `axis` by `spin` times the time plus \
+         the keyframes' `angle`. Without a motion things stay where they are.",
     );
     page.head(false);
     page.rows("Motion", &Motion::default(), None, all);
@@ -412,8 +420,8 @@ fn page() -> String {
 
     page.section(
         "shape of bodies and obstacles",
-        "A table with the key `type`, or the type's name alone for its defaults. Shapes are about the origin, z up; \
-         `scale`, `rotate` and `translate` place them.",
+        "A table with the key `type`, or the type's name alone for its defaults. Shapes are about the \
+         origin, z up; `scale`, `rotate` and `translate` place them.",
     );
     let _ = write!(page.text, "\n`type = \"sheet\"`: a flat rectangle in the xy plane.\n");
     page.head(false);
@@ -433,15 +441,15 @@ fn page() -> String {
     page.rows("Cuboid", &Cuboid::default(), None, all);
     let _ = write!(
         page.text,
-        "\n`type = \"figure\"`: a human figure, 1.7 m tall, that stands at the origin, looks along x, and walks and \
-         turns as its keys say; for obstacles only.\n"
+        "\n`type = \"figure\"`: a human figure, 1.7 m tall, that stands at the origin, looks along x, and \
+         walks and turns as its keys say; for obstacles only.\n"
     );
     page.head(false);
     page.rows("Figure", &Figure::default(), None, all);
     let _ = write!(
         page.text,
-        "\n`type = \"garment\"`: a tube of cloth around the figure as it stands at the start; `scale`, `rotate` and \
-         `translate` as those of the figure.\n"
+        "\n`type = \"garment\"`: a tube of cloth around the figure as it stands at the start; `scale`, \
+         `rotate` and `translate` as those of the figure.\n"
     );
     page.head(false);
     page.rows("Garment", &Garment::default(), None, all);
@@ -519,7 +527,8 @@ fn the_reference_page_is_up_to_date() {
     let first = stored.lines().zip(page.lines()).find(|(a, b)| a != b);
     assert!(
         stored == page,
-        "docs/scene-reference.md is stale, first at {first:?}: BOWKNOT_ACCEPT=1 cargo test --release --workspace reference"
+        "docs/scene-reference.md is stale, first at {first:?}: BOWKNOT_ACCEPT=1 cargo test --release \
+         --workspace reference"
     );
 }
 

@@ -403,7 +403,8 @@ fn frames_picked_by_hand_keep_the_names_of_their_bodies() {
     let folder = tempfile::tempdir().expect("a folder");
     let (out, picked) = (folder.path().join("run"), folder.path().join("picked"));
     let text = "simulation = { frames = 3 }\n\
-                body = [{ name = \"left sleeve\", shape = \"sheet\" }, { name = \"cap\", shape = \"sheet\", translate = [0, 0, 1] }]\n";
+                body = [{ name = \"left sleeve\", shape = \"sheet\" }, \
+                { name = \"cap\", shape = \"sheet\", translate = [0, 0, 1] }]\n";
     go(&Scene::from_toml(text, "").expect("a scene"), &options(&out)).expect("a run");
     fs::create_dir(&picked).expect("a folder");
     for frame in ["000001.ply", "000003.ply"] {

@@ -134,14 +134,15 @@ fn a_pin_that_lets_go_and_a_body_that_comes_near_wake_islands() {
     assert_eq!(simulator.positions()[second], before);
 }
 
-/// What wakes in time is hit as if it had never slept. The block is so fast that it would first touch the pile
-/// in the time step of the impact, which would then be one on an unyielding obstacle.
+/// What wakes in time is hit as if it had never slept. The block is so fast that it would first touch the
+/// pile in the time step of the impact, which would then be one on an unyielding obstacle.
 #[test]
 fn a_pile_that_was_asleep_yields_like_one_that_was_awake() {
     const THROWN: usize = 3;
     let thrown = scene(&format!(
         "{SLEEP}{}[[body]]\nname = \"thrown\"\nkind = \"solid\"\nfriction = 0.5\nvelocity = [0, 0, -12]\n\
-         shape = {{ type = \"block\", size = [0.06, 0.06, 0.06], edge = 0.03 }}\ntranslate = [0, 0, 4]\n{GROUND}",
+         shape = {{ type = \"block\", size = [0.06, 0.06, 0.06], edge = 0.03 }}\ntranslate = [0, 0, \
+         4]\n{GROUND}",
         pile("first", 0.0),
     ));
     let mut asleep = Simulator::new(&thrown).expect("a simulator");
@@ -268,9 +269,10 @@ fn an_obstacle_that_moves_wakes_what_is_in_its_way() {
     for (speed, height) in [(0.2, 0.1), (3.0, 0.1), (60.0, 0.1), (60.0, 0.6)] {
         let arrival = 1.0 + 0.4 / speed;
         let plough = format!(
-            "{SLEEP}{}[[obstacle]]\nname = \"plough\"\nshape = {{ type = \"box\", size = [0.02, 0.3, 0.1] }}\n\
-             translate = [-0.5, 0, {height}]\nmotion = {{ keyframes = [{{ time = 1.0, translate = [0, 0, 0] }}, \
-             {{ time = {}, translate = [{}, 0, 0] }}] }}\n{GROUND}",
+            "{SLEEP}{}[[obstacle]]\nname = \"plough\"\nshape = {{ type = \"box\", size = [0.02, 0.3, 0.1] \
+             }}\n\
+             translate = [-0.5, 0, {height}]\nmotion = {{ keyframes = [{{ time = 1.0, translate = [0, 0, 0] \
+             }}, {{ time = {}, translate = [{}, 0, 0] }}] }}\n{GROUND}",
             pile("first", 0.0),
             1.0 + 1.0 / speed,
             1.0,

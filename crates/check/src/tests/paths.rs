@@ -16,8 +16,8 @@ fn hits(judge: &Judge, x0: &[Point], x1: &[Point]) -> usize {
     judge.check_path(x0, x1, &options).expect("valid points").hit_count
 }
 
-/// A vertex 2e-13 m above a triangle of 0.5 m by 1e-7 m, by exact arithmetic over these coordinates. The plane
-/// through the triangle was taken from its two long edges, and was off by 4.5e-11 m.
+/// A vertex 2e-13 m above a triangle of 0.5 m by 1e-7 m, by exact arithmetic over these coordinates. The
+/// plane through the triangle was taken from its two long edges, and was off by 4.5e-11 m.
 #[test]
 fn a_vertex_that_rests_just_above_a_sliver_is_no_hit() {
     let x = [
@@ -33,8 +33,8 @@ fn a_vertex_that_rests_just_above_a_sliver_is_no_hit() {
     assert!((distance - 1.98684e-13).abs() < 1e-15, "{distance:e}");
 }
 
-/// Two edges of 2.3 m that cross at an angle of 5e-6 come to 5.7e-14 m of each other, by exact arithmetic over these
-/// coordinates. Their cross product is off by an angle of 1e-10.
+/// Two edges of 2.3 m that cross at an angle of 5e-6 come to 5.7e-14 m of each other, by exact arithmetic
+/// over these coordinates. Their cross product is off by an angle of 1e-10.
 #[test]
 fn edges_that_pass_close_by_and_nearly_parallel_are_no_hit() {
     let first = [
@@ -59,9 +59,9 @@ fn edges_that_pass_close_by_and_nearly_parallel_are_no_hit() {
     }
 }
 
-/// A short edge slides past an edge that is 400,000 times as long, 3e-14 m beside it. By exact arithmetic over these
-/// coordinates the lines of both cross at 4e-6 of the path, 4.5e-12 m beyond the end of the short edge. There only
-/// directions across the long edge certify anything.
+/// A short edge slides past an edge that is 400,000 times as long, 3e-14 m beside it. By exact arithmetic
+/// over these coordinates the lines of both cross at 4e-6 of the path, 4.5e-12 m beyond the end of the short
+/// edge. There only directions across the long edge certify anything.
 #[test]
 fn an_edge_that_slides_off_the_side_of_a_long_one_is_no_hit() {
     let long = [[0.0, 0.0, 1e-9], [-0.006109734554016352, -0.31226992782155005, 0.4030510688834673]];

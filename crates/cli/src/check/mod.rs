@@ -95,6 +95,14 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
     Ok(if report.clear { Exit::Success } else { Exit::CheckFailed })
 }
 
+/// A state of a file, with the judge of its elements.
+struct StateOfFile<'a> {
+    file: &'a Path,
+    mesh: &'a Mesh,
+    positions: &'a [Point],
+    judge: &'a Judge,
+}
+
 /// The state that was checked last, with the judge for its elements.
 struct PreviousState {
     /// The mesh without its positions.
@@ -174,7 +182,8 @@ impl Checker<'_> {
             ..Mesh::default()
         };
         self.note_problems(&name, &states.x, &states.triangles);
-        self.judged(file, name, &judge, &mesh, &states.x, None, || states.clone())
+        let state = StateOfFile { file, mesh: &mesh, positions: &states.x, judge: &judge };
+        self.judged(&state, name, None, || states.clone())
     }
 
     /// Checks a state, and the path from the previous one if `joined`.
@@ -212,7 +221,8 @@ impl Checker<'_> {
             Some(last) if last.absent == absent => last.judge,
             _ => judge_of(&mesh, count, [&absent, &[]]).map_err(bad_input)?,
         };
-        self.judged(file, name, &judge, &mesh, &positions, path, || {
+        let state = StateOfFile { file, mesh: &mesh, positions: &positions, judge: &judge };
+        self.judged(&state, name, path, || {
             let mut present = mesh.clone();
             present.leave_out(&absent);
             smallest::state_of(&present, &positions)
@@ -221,15 +231,12 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// Adds the verdict on a state, and that on the `path` to it. The mesh says what is of an obstacle and of which
-    /// body.
+    /// Adds the verdict on a state, and that on the `path` to it. The mesh says what is of an obstacle and of
+    /// which body.
     fn judged(
         &mut self,
-        file: &Path,
+        &StateOfFile { file, mesh, positions, judge }: &StateOfFile<'_>,
         name: String,
-        judge: &Judge,
-        mesh: &Mesh,
-        positions: &[Point],
         path: Option<PathReport>,
         states: impl FnOnce() -> States,
     ) -> Result<(), Failure> {
@@ -305,8 +312,8 @@ impl Checker<'_> {
         self.report.mesh_problems += problems.len();
         if let Some(first) = problems.first() {
             self.bar.print(&format!(
-                "warning: {name}: {first}; {} in all, which a deformable body may not have: `bowknot info` lists them, \
-                 `bowknot repair` drops them",
+                "warning: {name}: {first}; {} in all, which a deformable body may not have: `bowknot info` \
+                 lists them, `bowknot repair` drops them",
                 counted(problems.len(), "such triangle", "such triangles")
             ));
         }

@@ -23,8 +23,8 @@ pub fn write(file: &Path, states: &States) -> Result<String, Failure> {
     }
 }
 
-/// The state of a mesh as a problem that moves nothing. Bodies are numbered anew: any numbers may stand in a mesh, and
-/// obstacles share them with what is none.
+/// The state of a mesh as a problem that moves nothing. Bodies are numbered anew: any numbers may stand in a
+/// mesh, and obstacles share them with what is none.
 pub fn state_of(mesh: &Mesh, positions: &[Point]) -> States {
     let count = positions.len();
     let obstacle = mesh.obstacle.clone().unwrap_or_else(|| vec![false; count]);

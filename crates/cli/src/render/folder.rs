@@ -163,8 +163,8 @@ fn frames(folder: &Path) -> Result<BTreeMap<usize, PathBuf>, Failure> {
     Ok(frames)
 }
 
-/// The half-space of a square with counter-clockwise corners, seen from outside; none if it has no area, since the
-/// half-space is not there.
+/// The half-space of a square with counter-clockwise corners, seen from outside; none if it has no area,
+/// since the half-space is not there.
 fn plane(corners: &[Point; 4]) -> Option<HalfSpace> {
     HalfSpace::new(corners[0], (corners[1] - corners[0]).cross(&(corners[3] - corners[0])))
 }

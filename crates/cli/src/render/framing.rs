@@ -1,11 +1,13 @@
-//! Which bodies the camera is fitted to: not those that have left the scene, such as one that fell off a table.
+//! Which bodies the camera is fitted to: not those that have left the scene, such as one that fell off a
+//! table.
 
 use crate::bare_mesh::extent;
 use bowknot::geometry::Point;
 use bowknot::io::Mesh;
 use std::collections::{HashMap, HashSet};
 
-/// Distance from where all bodies are at the start, in the diagonal of their box there, beyond which a body has left.
+/// Distance from where all bodies are at the start, in the diagonal of their box there, beyond which a body
+/// has left.
 const LEFT: f64 = 1.0;
 
 /// The bodies of a run, and where they are at the start.
@@ -23,7 +25,8 @@ impl<'a> Framing<'a> {
         Self { body, obstacle, home: extent(&first.positions).into() }
     }
 
-    /// The positions of a frame without those of bodies that have left; all of them if no deformable body stays.
+    /// The positions of a frame without those of bodies that have left; all of them if no deformable body
+    /// stays.
     pub fn staying(&self, positions: &'a [Point]) -> impl Iterator<Item = &'a Point> {
         let body = |v: usize| self.body.get(v).copied().unwrap_or(0);
         // Lower and upper corner, and whether it deforms. Numbers of bodies may be any.

@@ -44,8 +44,8 @@ impl Gaps {
     }
 
     /// For each vertex, the smallest distance from an element with this vertex to an element that shares no
-    /// vertex with it [m], or to the `ground`; the cap, if there is none within the cap. Elements with a vertex that is
-    /// `absent` count for nothing; one entry per vertex, or none at all.
+    /// vertex with it [m], or to the `ground`; the cap, if there is none within the cap. Elements with a
+    /// vertex that is `absent` count for nothing; one entry per vertex, or none at all.
     pub fn measure(&self, positions: &[Point], ground: &[HalfSpace], absent: &[bool]) -> Vec<f64> {
         let mut gaps = vec![self.cap; positions.len()];
         let (mut pairs, mut separations) = (PairList::default(), Vec::new());

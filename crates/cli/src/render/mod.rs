@@ -56,8 +56,8 @@ impl Output {
             // The name of a folder may contain a dot, as in run.2.
             Some(_) if path.is_dir() => Ok(Self::Folder),
             Some(other) => Err(Failure::input(format!(
-                "{}: no format is called .{other}: pictures end in .png, animations in .gif, and a name without \
-                 an extension is a folder of pictures",
+                "{}: no format is called .{other}: pictures end in .png, animations in .gif, and a name \
+                 without an extension is a folder of pictures",
                 path.display()
             ))),
         }
@@ -148,7 +148,8 @@ fn select(options: &RenderOptions, output: Output, run: &RunFolder) -> Result<(V
     Ok((frames, options.fps.unwrap_or(1.0 / (dt * range.step as f64))))
 }
 
-/// The camera, which is fitted to the whole run, without bodies that have left the scene, unless the options give one.
+/// The camera, which is fitted to the whole run, without bodies that have left the scene, unless the options
+/// give one.
 fn shot(
     options: &RenderOptions,
     run: &RunFolder,

@@ -153,7 +153,8 @@ fn meshes_that_cannot_be_read() {
         place.run("run scene.toml").refused(2, &[says]);
         place.run("run mesh.obj").refused(2, &[says]);
     }
-    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float \
+               z\n\
                element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n";
     with_mesh(&place, "body", "mesh.ply", ply);
     place.run("run scene.toml").refused(2, &["mesh.ply", "truncated"]);
@@ -206,7 +207,8 @@ fn a_start_that_intersects() {
         format!(
             "[[body]]\nname = \"left\"\n{sheet}\n\
              [[body]]\nname = \"right\"\n{sheet}\nrotate = [80.0, 10.0, 0.0]\n\
-             [[obstacle]]\nname = \"ground\"\nshape = {{ type = \"half-space\" }}\ntranslate = [0.0, 0.0, -1.0]\n"
+             [[obstacle]]\nname = \"ground\"\nshape = {{ type = \"half-space\" }}\ntranslate = [0.0, 0.0, \
+             -1.0]\n"
         ),
     );
     let says = [
@@ -286,7 +288,8 @@ fn with_body(place: &Place, kind: &str, name: &str, content: impl AsRef<[u8]>) {
 /// Two tetrahedra that share a face as Gmsh writes them, the second in this order.
 fn two_tetrahedra(second: &str, tip: &str) -> String {
     format!(
-        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 {tip}\n$EndNodes\n\
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 \
+         {tip}\n$EndNodes\n\
          $Elements\n2\n1 4 2 0 1 1 2 3 4\n2 4 2 0 1 {second}\n$EndElements\n"
     )
 }

@@ -107,8 +107,10 @@ fn what_cannot_be_judged() {
 }
 
 /// One tetrahedron, in Gmsh's text.
-const SOLID: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0.2 0.2 0.2\n\
-                     $EndNodes\n$Elements\n4\n1 4 0 1 2 3 5\n2 4 0 1 4 2 5\n3 4 0 2 4 3 5\n4 4 0 1 3 4 5\n$EndElements\n";
+const SOLID: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 \
+                     0.2 0.2 0.2\n\
+                     $EndNodes\n$Elements\n4\n1 4 0 1 2 3 5\n2 4 0 1 4 2 5\n3 4 0 2 4 3 5\n4 4 0 1 3 4 \
+                     5\n$EndElements\n";
 
 #[test]
 fn the_surface_of_a_solid_is_judged() {
@@ -118,7 +120,8 @@ fn the_surface_of_a_solid_is_judged() {
     assert!(ended.stdout.contains("no intersection; smallest distance 5.774e-1 m"), "{ended:#?}");
     // Inside, the vertex belongs to no surface; a second solid around it does intersect.
     let pierced = "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nVertex 4 -1 0.2 0.2\n\
-                   Vertex 5 3 0.2 0.2\nVertex 6 3 0.3 0.2\nVertex 7 3 0.2 0.3\nTet 0 0 1 2 3\nTet 1 4 5 6 7\n";
+                   Vertex 5 3 0.2 0.2\nVertex 6 3 0.3 0.2\nVertex 7 3 0.2 0.3\nTet 0 0 1 2 3\nTet 1 4 5 6 \
+                   7\n";
     place.write("pierced.t", pierced);
     let ended = place.run("check pierced.t");
     assert_eq!(ended.code, 1, "{ended:#?}");
@@ -140,7 +143,8 @@ fn solids_and_strands_are_counted() {
 /// A lid that waits while a cloth falls through its place, and a ground that vanishes.
 const COMING_AND_GOING: &str = "[[body]]\nname = \"cloth\"\ntranslate = [0, 0, 0.5]\n\
      shape = { type = \"sheet\", size = [0.2, 0.2], edge = 0.04 }\n\
-     [[obstacle]]\nname = \"lid\"\nshape = { type = \"box\", size = [0.5, 0.5, 0.02] }\ntranslate = [0, 0, 0.49]\n\
+     [[obstacle]]\nname = \"lid\"\nshape = { type = \"box\", size = [0.5, 0.5, 0.02] }\ntranslate = [0, 0, \
+     0.49]\n\
      motion = { spin = 90 }\nappears = 0.045\n\
      [[obstacle]]\nname = \"ground\"\nshape = \"half-space\"\ntranslate = [0, 0, 0.45]\nvanishes = 0.2\n";
 

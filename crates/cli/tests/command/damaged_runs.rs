@@ -1,8 +1,8 @@
-//! Commands that read the folder of a run end with a message, whatever its files hold: without a panic, in time, and
-//! within a limit on memory.
+//! Commands that read the folder of a run end with a message, whatever its files hold: without a panic, in
+//! time, and within a limit on memory.
 //!
-//! `BOWKNOT_SEEDS=200` tries a hundred times as many damages as CI does. A folder that brings a command down is kept,
-//! and its path is printed.
+//! `BOWKNOT_SEEDS=200` tries a hundred times as many damages as CI does. A folder that brings a command down
+//! is kept, and its path is printed.
 
 use crate::{Ended, Place};
 use std::fs;

@@ -1,5 +1,5 @@
-//! What a run meets from outside: damaged checkpoints, a second run, signals, disks and folders that cannot be written.
-//! Panics are tested in `fault.rs` of the command.
+//! What a run meets from outside: damaged checkpoints, a second run, signals, disks and folders that cannot
+//! be written. Panics are tested in `fault.rs` of the command.
 
 use crate::{Ended, Place, SMALL};
 use std::fs::{self, Permissions};

@@ -76,5 +76,10 @@ fn a_full_disk_leaves_whole_frames() {
     assert!(place.files("some/frames").iter().all(|name| name.ends_with(".ply")), "no half-written file");
     place.run("check some/frames").ok();
     // Without the limit the run continues.
-    place.run("run drape --scale 0.16 --frames 400 --set output.checkpoint_every=400 --out some --resume --set simulation.frames=4").ok();
+    place
+        .run(
+            "run drape --scale 0.16 --frames 400 --set output.checkpoint_every=400 --out some --resume --set \
+               simulation.frames=4",
+        )
+        .ok();
 }

@@ -1,7 +1,7 @@
 //! Runs that are killed at random moments.
 //!
-//! `BOWKNOT_KILLS=200 cargo test --release -p bowknot-cli --test command kills` kills 200 times; `cargo xtask faults
-//! --kills 200` does so and prints the count.
+//! `BOWKNOT_KILLS=200 cargo test --release -p bowknot-cli --test command kills` kills 200 times; `cargo xtask
+//! faults --kills 200` does so and prints the count.
 
 use crate::Place;
 use std::fs;
@@ -123,6 +123,7 @@ fn a_killed_run_resumes_to_the_same_bits() {
         runs += 1;
     }
     eprintln!(
-        "{kills} kills of {runs} runs, {torn_ends} of them after the first frame: every run ended with the same bits"
+        "{kills} kills of {runs} runs, {torn_ends} of them after the first frame: every run ended with the \
+         same bits"
     );
 }

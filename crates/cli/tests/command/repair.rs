@@ -31,9 +31,11 @@ fn a_seam_is_welded_and_the_mesh_runs() {
 }
 
 /// The panels of [`SEAM`] as quads with texture coordinates of their own, and a triangle given twice.
-const TEXTURED: &str = "mtllib cloth.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 1 0 0\nv 2 0 0\nv 1 1 0\nv 2 1 0\n\
+const TEXTURED: &str = "mtllib cloth.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 1 0 0\nv 2 0 0\nv 1 1 0\nv 2 \
+                        1 0\n\
                         vt 0 0\nvt 0.4 0\nvt 0.4 1\nvt 0 1\nvt 0.6 0\nvt 1 0\nvt 1 1\nvt 0.6 1\n\
-                        g left\nusemtl silk\nf 1/1 2/2 4/3 3/4\ng right\nusemtl wool\nf 5/5 6/6 8/7 7/8\nf 8/7 5/5 6/6\n";
+                        g left\nusemtl silk\nf 1/1 2/2 4/3 3/4\ng right\nusemtl wool\nf 5/5 6/6 8/7 7/8\nf \
+                        8/7 5/5 6/6\n";
 
 #[test]
 fn what_an_obj_says_about_faces_is_kept() {
@@ -112,7 +114,8 @@ const SOLID: &str = "[simulation]\nframes = 3\n[[body]]\nname = \"it\"\nkind = \
 #[test]
 fn a_solid_is_repaired_and_runs() {
     let place = Place::new();
-    let text = "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nVertex 4 0 0 -1\nVertex 5 0.1 0.1 2\n\
+    let text = "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nVertex 4 0 0 -1\nVertex 5 \
+                0.1 0.1 2\n\
                 Vertex 6 0 1e-6 0\nVertex 7 1 1 0\nVertex 8 9 9 9\n\
                 Tet 0 0 1 2 3\nTet 1 6 1 2 4\nTet 2 2 1 0 3\nTet 3 0 1 2 5\nTet 4 1 1 2 3\nTet 5 0 1 2 7\n\
                 Face 0 0 1 3\nFace 1 1 3 7\n";

@@ -277,7 +277,8 @@ fn ticks_are_told_apart() {
     let page = format!(
         "<meta charset=\"utf-8\"><script id=\"meta\" type=\"application/json\">{{}}</script>\
          <script id=\"columns\" type=\"application/json\">{{}}</script>\
-         <body><p></p><script>{script}\ndocument.querySelector(\"p\").textContent = JSON.stringify({cases});</script>"
+         <body><p></p><script>{script}\ndocument.querySelector(\"p\").textContent = \
+         JSON.stringify({cases});</script>"
     );
     place.write("ticks.html", page);
     let (dom, _) = open(&chromium, &place.path("ticks.html"), "", &[]);

@@ -13,9 +13,10 @@ fn a_run_writes_its_folder() {
     }
     for line in place.read("out/drape/stats.jsonl").lines() {
         let step: serde_json::Value = serde_json::from_str(line).unwrap();
-        for key in "step time newton_iterations cg_iterations two_way_steps searches pairs contact_rows edge_rows \
-                    active_rows frozen_pairs remaining_r remaining_m stationarity_m converged min_gap_m max_stretch \
-                    max_step_stretch max_speed energy momentum center_of_mass seconds cpu_seconds skipped residual_n residual_m tolerance_m solved"
+        for key in "step time newton_iterations cg_iterations two_way_steps searches pairs contact_rows \
+                    edge_rows active_rows frozen_pairs remaining_r remaining_m stationarity_m converged \
+                    min_gap_m max_stretch max_step_stretch max_speed energy momentum center_of_mass seconds \
+                    cpu_seconds skipped residual_n residual_m tolerance_m solved"
             .split_whitespace()
         {
             assert!(step.get(key).is_some(), "{key} is missing: {line}");
@@ -70,7 +71,8 @@ fn an_overlap_at_the_start_says_what_to_move() {
     let place = Place::new();
     place.write(
         "scene.toml",
-        "[[body]]\nname = \"sheet\"\nshape = { type = \"sheet\", edge = 0.1 }\ntranslate = [0.01, 0.02, 0.2]\n\
+        "[[body]]\nname = \"sheet\"\nshape = { type = \"sheet\", edge = 0.1 }\ntranslate = [0.01, 0.02, \
+         0.2]\n\
          [[obstacle]]\nname = \"ball\"\nshape = { type = \"ball\", radius = 0.25, edge = 0.05 }\n",
     );
     let ended = place.run("run scene.toml").refused(2, &["sheet and ball overlap: move sheet by 0.05"]);

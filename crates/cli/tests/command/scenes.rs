@@ -113,7 +113,8 @@ fn info_lists_the_structure_of_a_mesh_and_its_problems() {
     place.write("bad.obj", format!("{SQUARE_AND_TRIANGLE}f 1 4 5\nf 7 6 5\n"));
     let ended = place.run("info bad.obj").ok();
     for words in [
-        "edges of three or more triangles 1\n    vertices 0, 3, triangles 0, 1, 3, at (50.0000, 50.0000, 0.0000)",
+        "edges of three or more triangles 1\n    vertices 0, 3, triangles 0, 1, 3, at (50.0000, 50.0000, \
+         0.0000)",
         "refuses the mesh as a body 1\n    triangle 4 repeats triangle 2 (vertices 6, 5, 4), at (3, 3, 9)",
     ] {
         assert!(ended.stdout.contains(words), "{words:?}: {ended:#?}");

@@ -263,8 +263,8 @@ impl Correction<'_> {
         nodes.for_each(|n| v[n] += change(n) * share);
     }
 
-    /// Gives a group of components the momenta that outer forces leave it, by a rigid motion of the group: all of them if
-    /// nothing holds it, else linear momentum in its free directions.
+    /// Gives a group of components the momenta that outer forces leave it, by a rigid motion of the group:
+    /// all of them if nothing holds it, else linear momentum in its free directions.
     fn conserve(&self, group: &Group, v: &mut [Vector]) {
         let components = &self.model.components;
         let nodes = nodes_of(self.model, group);
@@ -279,9 +279,9 @@ impl Correction<'_> {
         let is_free = group.free == Matrix3::identity();
         let velocity = start.velocity + impulse / mass;
         let velocity = if is_free { velocity } else { end.velocity + group.free * (velocity - end.velocity) };
-        // Angular momentum is not prescribed in three cases. Contacts with obstacles change it; friction takes some from
-        // the motion of grains, which have no spin that could take it up; and the forces of the air depend on the
-        // velocities that are corrected here.
+        // Angular momentum is not prescribed in three cases. Contacts with obstacles change it; friction
+        // takes some from the motion of grains, which have no spin that could take it up; and the forces of
+        // the air depend on the velocities that are corrected here.
         let exact = end.spin(start.angular + torque);
         let turns = is_free
             && !self.in_air

@@ -48,7 +48,7 @@ use bowknot_geometry::{Point, Vector};
 use conservation::EndOfStep;
 use newton::bodies::{Answer, Bodies, BodyEnergies, Lost};
 use newton::cpu::CpuBodies;
-use newton::device::{Beginning, Device, conserve_momentum, on_device};
+use newton::device::{Beginning, Device, DeviceTarget, conserve_momentum, on_device};
 use newton::momentum::free_groups;
 use newton::state::{Course, EvaluationCache, Newton, Step, Workspace};
 use rayon::prelude::*;
@@ -184,9 +184,9 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Sets the [`Residual::distance`] at which a time step counts as solved [m], 0 at first: none. It takes effect at the next
-    /// [`Self::begin_step`]. Linear solves that correct a step are then accurate enough for it, however far bodies move in
-    /// the step and however much they differ in mass.
+    /// Sets the [`Residual::distance`] at which a time step counts as solved [m], 0 at first: none. It takes
+    /// effect at the next [`Self::begin_step`]. Linear solves that correct a step are then accurate enough
+    /// for it, however far bodies move in the step and however much they differ in mass.
     pub fn set_step_tolerance(&mut self, distance: f64) {
         self.step_tolerance = distance;
     }
@@ -207,8 +207,8 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Forces of the springs on the side that their normal points to, where the last [`Self::residual`] was measured
-    /// [N]; one entry per spring.
+    /// Forces of the springs on the side that their normal points to, where the last [`Self::residual`] was
+    /// measured [N]; one entry per spring.
     pub fn contact_forces(&self) -> Vec<Vector> {
         let trial = self.repulsion.watched().iter().map(|&node| self.work.x[node as usize]);
         self.repulsion.forces(&trial.collect::<Vec<_>>())
@@ -226,9 +226,10 @@ impl Dynamics {
         positions.map(inertial).collect()
     }
 
-    /// The residual of the time step at `x` [m]. Contact forces are those of the springs at `x`. Only forces on
-    /// vertices that are free and `counted` enter; leave out vertices on which unknown forces act. All slices have one
-    /// entry per vertex. If there are springs, the next target begins as if they had just been set.
+    /// The residual of the time step at `x` [m]. Contact forces are those of the springs at `x`. Only forces
+    /// on vertices that are free and `counted` enter; leave out vertices on which unknown forces act. All
+    /// slices have one entry per vertex. If there are springs, the next target begins as if they had just
+    /// been set.
     ///
     /// # Errors
     /// A length is wrong, an entry is not finite, no step was begun, or the backend has failed.
@@ -265,9 +266,9 @@ impl Dynamics {
         &self.component_distances
     }
 
-    /// Lets Newton's method work from the iterate in the workspace, on a device if there is one for the model. What a
-    /// device cannot finish in single precision begins again on the CPU, as does the rest of the time step. With
-    /// `sets_trial` the trial in the workspace is the result.
+    /// Lets Newton's method work from the iterate in the workspace, on a device if there is one for the
+    /// model. What a device cannot finish in single precision begins again on the CPU, as does the rest of
+    /// the time step. With `sets_trial` the trial in the workspace is the result.
     fn with_bodies<T: Send>(
         &mut self,
         step: &Step,
@@ -299,8 +300,9 @@ impl Dynamics {
         let Workspace { x, imposed, trial, solver, .. } = &mut *work;
         if let Some(device) = device.as_mut().filter(|_| !course.leaves_device) {
             let beginning = Beginning { iterate: x, free: &free, imposed, watched: &watched };
-            let target = sets_trial.then_some(trial.as_mut_slice());
-            match on_device(model, params, step, course, device, beginning, target, &mut over) {
+            let target =
+                DeviceTarget { device, beginning, trial: sets_trial.then_some(trial.as_mut_slice()) };
+            match on_device(model, params, step, course, target, &mut over) {
                 Ok(done) => {
                     if sets_trial {
                         let groups = free_groups(model, repulsion, &free);
@@ -512,8 +514,8 @@ impl Dynamics {
         Ok(StepTerms::new(&self.model, &self.params, step))
     }
 
-    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes
-    /// it.
+    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread
+    /// computes it.
     ///
     /// # Errors
     /// No step was begun, or the length is wrong.

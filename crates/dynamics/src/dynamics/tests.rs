@@ -121,8 +121,8 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
     }
 }
 
-/// Steps of 10^6 times the size of the body, as an ill-conditioned system can have them, once raised energies from 10^-8 J
-/// to 10^240 J within one time step.
+/// Steps of 10^6 times the size of the body, as an ill-conditioned system can have them, once raised energies
+/// from 10^-8 J to 10^240 J within one time step.
 #[test]
 fn a_step_that_only_raises_the_potential_is_not_taken() {
     let (mut dynamics, x0, v0, _) = crumpled();
@@ -284,7 +284,8 @@ fn newton_converges_quadratically_under_tension() {
     assert!(quadratic && moves[7] < 1e-11, "{moves:?}");
 }
 
-/// [`crumpled`] in the wind, with springs of two to four vertices and limits of distances, most of which push.
+/// [`crumpled`] in the wind, with springs of two to four vertices and limits of distances, most of which
+/// push.
 fn crumpled_with_everything() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
     let (dynamics, x, v, prescribed) = crumpled();
     let Dynamics { model, params, .. } = dynamics;
@@ -411,7 +412,8 @@ fn newton_converges_with_wind_and_repulsion() {
     assert!(displacement < 1e-9, "still moves by {displacement:e}");
 }
 
-/// Newton's method ends where the gradient of the potential is zero, and the potential falls on the way there.
+/// Newton's method ends where the gradient of the potential is zero, and the potential falls on the way
+/// there.
 #[test]
 fn time_steps_end_where_the_gradient_is_zero() {
     let rest: Vec<Point> =

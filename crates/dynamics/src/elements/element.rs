@@ -21,8 +21,8 @@ pub(crate) trait Element<const N: usize>: Send + Sync {
     /// Elastic energy [J] at `x` [m], plus the dissipation potential since `start` if that is given.
     fn energy(&self, x: &[Vector; N], start: Option<Start<'_, N>>) -> f64;
 
-    /// What [`Self::linearize_in`] needs to know of a state, and is computed faster for four elements at once;
-    /// `()` if there is nothing like that.
+    /// What [`Self::linearize_in`] needs to know of a state, and is computed faster for four elements at
+    /// once; `()` if there is nothing like that.
     type Frame: Default;
 
     /// The frames of four elements at `x`. The frame of each depends on that element alone.

@@ -1,16 +1,18 @@
 //! Tetrahedra of linear strain: ten nodes, the corners and the middles of the edges.
 //!
-//! The shape functions are L_i (2 L_i - 1) for corner i and 4 L_i L_j for the middle of edge (i, j), with the barycentric
-//! coordinates L (Zienkiewicz and Taylor, "The Finite Element Method"). Edges are straight at rest and divided in half, so the
-//! gradients of L are constant, and F at a point is that of a [`Tetrahedron`] with its corners at
+//! The shape functions are L_i (2 L_i - 1) for corner i and 4 L_i L_j for the middle of edge (i, j), with the
+//! barycentric coordinates L (Zienkiewicz and Taylor, "The Finite Element Method"). Edges are straight at
+//! rest and divided in half, so the gradients of L are constant, and F at a point is that of a
+//! [`Tetrahedron`] with its corners at
 //!
 //! ```text
 //! y_k = sum_a (dN_a / dL_k) x_a
 //! ```
 //!
-//! The energy is integrated at four points, L = (a, b, b, b) and so on, exactly for polynomials of second order (Hammer,
-//! Marlowe and Stroud 1956): exactly for small strains. The element is therefore four tetrahedra of constant strain whose
-//! corners are sums of nodes. It bends without shear locking, and locks little as Poisson's ratio approaches 0.5.
+//! The energy is integrated at four points, L = (a, b, b, b) and so on, exactly for polynomials of second
+//! order (Hammer, Marlowe and Stroud 1956): exactly for small strains. The element is therefore four
+//! tetrahedra of constant strain whose corners are sums of nodes. It bends without shear locking, and locks
+//! little as Poisson's ratio approaches 0.5.
 
 use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
@@ -24,8 +26,8 @@ use nalgebra::Matrix3;
 const NEAR: f64 = 0.585_410_196_624_968_5;
 const FAR: f64 = 0.138_196_601_125_010_5;
 
-/// At each point, the derivatives of each node's shape function by L that are not zero, with the index of L. A corner has one;
-/// a zero fills the second place.
+/// At each point, the derivatives of each node's shape function by L that are not zero, with the index of L.
+/// A corner has one; a zero fills the second place.
 const DERIVATIVES: [[[(usize, f64); 2]; 10]; 4] = derivatives();
 
 const fn derivatives() -> [[[(usize, f64); 2]; 10]; 4] {
@@ -61,7 +63,8 @@ pub(crate) struct QuadraticTetrahedron {
 }
 
 impl QuadraticTetrahedron {
-    /// A tetrahedron over `nodes`, the corners first, with its corners at `rest`; None unless its volume at rest is positive.
+    /// A tetrahedron over `nodes`, the corners first, with its corners at `rest`; None unless its volume at
+    /// rest is positive.
     pub fn new(nodes: [u32; 10], rest: &[Vector; 4], material: &SolidMaterial) -> Option<Self> {
         let corners = [nodes[0], nodes[1], nodes[2], nodes[3]];
         let quarter = Tetrahedron::new(corners, rest, material)?.with_share(0.25);

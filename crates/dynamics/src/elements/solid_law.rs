@@ -85,8 +85,8 @@ impl SolidLaw {
         }
     }
 
-    /// First Piola-Kirchhoff stress dW/dF [Pa]: F (2 mu E + lambda tr(E) I), or eq. 18 of Smith et al. 2018, mu (1 -
-    /// 1/(I + 1)) F + (lambda (J - 1) - 3/4 mu) dJ/dF.
+    /// First Piola-Kirchhoff stress dW/dF [Pa]: F (2 mu E + lambda tr(E) I), or eq. 18 of Smith et al. 2018,
+    /// mu (1 - 1/(I + 1)) F + (lambda (J - 1) - 3/4 mu) dJ/dF.
     #[inline]
     pub fn stress(&self, f: &Matrix3<f64>) -> Matrix3<f64> {
         let strain = green_strain(f);

@@ -4,12 +4,13 @@ use super::measures::{area, volume};
 use crate::body::{Body, BodyShape};
 use bowknot_geometry::Point;
 
-/// Shares of the mass of a quadratic tetrahedron that each corner and each middle of an edge gets: those of the four small
-/// tetrahedra at the corners and of the octahedron between them, in equal parts to the vertices of each.
+/// Shares of the mass of a quadratic tetrahedron that each corner and each middle of an edge gets: those of
+/// the four small tetrahedra at the corners and of the octahedron between them, in equal parts to the
+/// vertices of each.
 const QUADRATIC_SHARES: [f64; 2] = [1.0 / 32.0, 7.0 / 48.0];
 
-/// Lumped masses [kg]: each element gives equal shares of its mass to its vertices; a quadratic tetrahedron gives
-/// [`QUADRATIC_SHARES`].
+/// Lumped masses [kg]: each element gives equal shares of its mass to its vertices; a quadratic tetrahedron
+/// gives [`QUADRATIC_SHARES`].
 pub(super) fn masses(positions: &[Point], bodies: &[Body]) -> Vec<f64> {
     let mut masses = vec![0.0; positions.len()];
     let at = |v: u32| positions[v as usize].coords;

@@ -173,8 +173,9 @@ impl DynamicsModel {
         &self.bodies
     }
 
-    /// Mass of each vertex [kg]: a third of the mass of its triangles, a quarter of the mass of its tets (1/32
-    /// of that of quadratic ones at a corner, 7/48 in the middle of an edge), half of the mass of its strand edges, the mass of a grain; 0 for vertices of obstacles.
+    /// Mass of each vertex [kg]: a third of the mass of its triangles, a quarter of the mass of its tets
+    /// (1/32 of that of quadratic ones at a corner, 7/48 in the middle of an edge), half of the mass of its
+    /// strand edges, the mass of a grain; 0 for vertices of obstacles.
     pub fn masses(&self) -> &[f64] {
         &self.masses
     }
@@ -208,8 +209,8 @@ impl DynamicsModel {
         self.components.partition_point(|c| c.end <= node)
     }
 
-    /// The component that each vertex is in: vertices that elements connect have the same number, those of obstacles
-    /// `u32::MAX`.
+    /// The component that each vertex is in: vertices that elements connect have the same number, those of
+    /// obstacles `u32::MAX`.
     pub fn components_of_vertices(&self) -> Vec<u32> {
         let mut components = vec![u32::MAX; self.vertex_count()];
         for (component, nodes) in (0..).zip(&self.components) {

@@ -7,8 +7,8 @@ use crate::linear::scalar::ScalarForm;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 
-/// Stiffness of each node at rest in its softest direction [N/m], while its neighbors do not move: that of bending for cloth
-/// and strands.
+/// Stiffness of each node at rest in its softest direction [N/m], while its neighbors do not move: that of
+/// bending for cloth and strands.
 pub(super) fn softest(
     rest: &[Vector],
     element_sets: &[Box<dyn AnyElementSet>],

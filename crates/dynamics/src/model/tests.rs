@@ -218,7 +218,8 @@ fn a_warp_normal_to_triangles_is_refused_for_woven_cloth_only() {
     let errors = DynamicsModel::new(positions.clone(), body(woven)).expect_err("no projection");
     assert_eq!(
         errors[0].to_string(),
-        "body \"flag\": warp_direction is normal to 2 of its triangles (0, 1): choose a direction along the cloth"
+        "body \"flag\": warp_direction is normal to 2 of its triangles (0, 1): choose a direction along the \
+         cloth"
     );
     let along = ClothMaterial { warp_direction: Vector::new(0.0, 1.0, 9.0), ..woven };
     let model = DynamicsModel::new(positions, body(along)).expect("projected");

@@ -7,8 +7,8 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 impl Repulsion {
-    /// Energy at positions `x` of the watched nodes [J], up to a constant. Its negative gradient is the force that
-    /// [`Self::linearize`] finds there, as long as no [`Self::update`] is between.
+    /// Energy at positions `x` of the watched nodes [J], up to a constant. Its negative gradient is the force
+    /// that [`Self::linearize`] finds there, as long as no [`Self::update`] is between.
     pub fn energy(&self, x: &[Vector]) -> f64 {
         let partial: Vec<f64> = (0..self.springs.len().div_ceil(CHUNK))
             .into_par_iter()

@@ -1,23 +1,25 @@
 //! The normal force of a contact as a function of its gap.
 
-/// Smallest share of the room at which the static force begins to go on linearly. Smaller: contacts can carry more
-/// before the floor is reached, but the law is stiffer. Larger: loads of more than about k room / share^2 press through
-/// the floor.
+/// Smallest share of the room at which the static force begins to go on linearly. Smaller: contacts can carry
+/// more before the floor is reached, but the law is stiffer. Larger: loads of more than about k room /
+/// share^2 press through the floor.
 pub(super) const MIN_BEND: f64 = 0.02;
 
-/// Smallest share of the room at which the stiffness for the drag is taken. Smaller: contacts that begin deep open more
-/// slowly. Larger: they open faster, and closing ones are damped less.
+/// Smallest share of the room at which the stiffness for the drag is taken. Smaller: contacts that begin deep
+/// open more slowly. Larger: they open faster, and closing ones are damped less.
 const MIN_DRAG_SHARE: f64 = 0.05;
 
-/// Bisections in the search for the release. More: the force jumps by less there; 40 leave 10^-12 of the reach.
+/// Bisections in the search for the release. More: the force jumps by less there; 40 leave 10^-12 of the
+/// reach.
 const BISECTIONS: usize = 40;
 
 /// The normal force of a contact as a function of its gap g.
 ///
-/// With the room r = reach - floor and s = (g - floor) / r, the static force is k r (1 - s) / s^2. It is zero at the
-/// reach, has the slope -k there, and is infinite at the floor. Below s = `bend` it goes on linearly, so that Newton's
-/// method can begin anywhere. A drag toward the gap at the start of the time step, drag (from - g), is added. It damps
-/// closing and opening. The sum never pulls: from the gap `release` on, where it would begin to, the force is zero.
+/// With the room r = reach - floor and s = (g - floor) / r, the static force is k r (1 - s) / s^2. It is zero
+/// at the reach, has the slope -k there, and is infinite at the floor. Below s = `bend` it goes on linearly,
+/// so that Newton's method can begin anywhere. A drag toward the gap at the start of the time step, drag
+/// (from - g), is added. It damps closing and opening. The sum never pulls: from the gap `release` on, where
+/// it would begin to, the force is zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct NormalLaw {
     /// Stiffness k at the reach [N/m].
@@ -56,8 +58,8 @@ fn shape(s: f64) -> [f64; 3] {
 }
 
 impl NormalLaw {
-    /// A law without drag that bends as late as possible. The reach must be above the floor. `start` is the gap at the
-    /// start of the time step.
+    /// A law without drag that bends as late as possible. The reach must be above the floor. `start` is the
+    /// gap at the start of the time step.
     pub fn new(stiffness: f64, reach: f64, floor: f64, start: f64) -> Self {
         let from = start.min(reach).max(floor + MIN_BEND * (reach - floor));
         let mut law = Self { stiffness, reach, floor, from, release: reach, bend: MIN_BEND, drag: 0.0 };
@@ -65,8 +67,8 @@ impl NormalLaw {
         law
     }
 
-    /// Sets the drag to `ratio` times the static stiffness at the start of the time step, and less the nearer the `gap` is
-    /// to the reach, where it is 0.
+    /// Sets the drag to `ratio` times the static stiffness at the start of the time step, and less the nearer
+    /// the `gap` is to the reach, where it is 0.
     pub fn set_drag(&mut self, ratio: f64, gap: f64) {
         let depth = 1.0 - self.share(gap).clamp(MIN_DRAG_SHARE, 1.0);
         self.drag = ratio * depth * self.tangent(self.from, MIN_DRAG_SHARE);
@@ -143,13 +145,14 @@ impl NormalLaw {
         push
     }
 
-    /// Stiffness of the static force at a gap, of which the share of the room counts as `least` at least [N/m].
+    /// Stiffness of the static force at a gap, of which the share of the room counts as `least` at least
+    /// [N/m].
     pub fn tangent(&self, gap: f64, least: f64) -> f64 {
         self.stiffness * shape(self.share(gap).clamp(least, 1.0 - 1e-9))[1]
     }
 
-    /// The force of a contact that is open now and expected to close: the slope of the law at its reach, as a spring
-    /// that pulls as well. Thus one linear solve finds the force with which it closes.
+    /// The force of a contact that is open now and expected to close: the slope of the law at its reach, as a
+    /// spring that pulls as well. Thus one linear solve finds the force with which it closes.
     pub fn predicted(&self, gap: f64) -> Push {
         let k = self.stiffness + self.drag;
         let depth = self.reach - gap;

@@ -39,8 +39,8 @@ impl Repulsion {
         let across = Matrix3::identity() - along_normal;
         let (mut hessian, mut force) = (along_normal * k, n * push);
         if self.springs[spring].kind == SpringKind::Limit {
-            // The normal turns with the ends, so a tension holds them sideways too. A pull of a predicted spring would
-            // do the opposite, and is left out.
+            // The normal turns with the ends, so a tension holds them sideways too. A pull of a predicted
+            // spring would do the opposite, and is left out.
             let length = -self.springs[spring].offset - gap;
             hessian += across * (push.max(0.0) / length.max(f64::MIN_POSITIVE));
         }

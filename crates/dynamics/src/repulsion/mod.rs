@@ -12,20 +12,22 @@
 //! drag      d (g0 - g)                        energy  d/2 (g0 - g)^2
 //! ```
 //!
-//! as long as the sum pushes; g0 is the gap at the start of the time step. The static force is zero at the reach,
-//! where its slope is -k, and infinite at the floor. It is a barrier as in Incremental Potential Contact (Li et al.
-//! 2020). As in "A cubic barrier with elasticity-inclusive dynamic stiffness" (Ando 2024), its stiffness follows from
-//! inertia and from the bodies' own stiffness. Below a small gap the force goes on linearly, so that an iterate may
-//! be anywhere; the collision stage keeps distances. The drag lets contacts open without bouncing.
+//! as long as the sum pushes; g0 is the gap at the start of the time step. The static force is zero at the
+//! reach, where its slope is -k, and infinite at the floor. It is a barrier as in Incremental Potential
+//! Contact (Li et al. 2020). As in "A cubic barrier with elasticity-inclusive dynamic stiffness" (Ando 2024),
+//! its stiffness follows from inertia and from the bodies' own stiffness. Below a small gap the force goes on
+//! linearly, so that an iterate may be anywhere; the collision stage keeps distances. The drag lets contacts
+//! open without bouncing.
 //!
-//! Friction is Coulomb's law as an elastic-plastic return mapping (Simo and Laursen 1992, "An augmented Lagrangian
-//! treatment of contact problems involving friction") that begins with the friction at the start of the time step, so
-//! that what sticks does not creep. Its bound lags by one Newton iteration (Li et al. 2020, section 5). An edge that
-//! is taut is a contact as well, with the gap -offset - |s|.
+//! Friction is Coulomb's law as an elastic-plastic return mapping (Simo and Laursen 1992, "An augmented
+//! Lagrangian treatment of contact problems involving friction") that begins with the friction at the start
+//! of the time step, so that what sticks does not creep. Its bound lags by one Newton iteration (Li et al.
+//! 2020, section 5). An edge that is taut is a contact as well, with the gap -offset - |s|.
 //!
-//! There are no multipliers. Where two contacts ask for more room than there is, as in a narrow gap, multipliers grow
-//! from solve to solve without bound. A force that follows from the gap alone balances. Nor is there an active set:
-//! the force vanishes continuously at the release. In exchange gaps decrease with the load.
+//! There are no multipliers. Where two contacts ask for more room than there is, as in a narrow gap,
+//! multipliers grow from solve to solve without bound. A force that follows from the gap alone balances. Nor
+//! is there an active set: the force vanishes continuously at the release. In exchange gaps decrease with the
+//! load.
 //!
 //! Callers carry friction from one time step to the next: as a share of the normal force, in
 //! [`RepulsionSpring::friction_ratio`], from what [`crate::Dynamics::contact_forces`] returns.

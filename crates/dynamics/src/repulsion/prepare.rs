@@ -1,10 +1,10 @@
 //! The laws of springs in a time step, and their state at the iterate that a target begins from.
 //!
-//! The stiffness of a spring is relative to that of the nodes it acts on, so that a contact neither gives way nor
-//! makes the system ill-conditioned. A node is as stiff as its inertia and its body at rest in the softest direction:
-//! bending for cloth. Two things correct that. A whole body cannot resist more than its own inertia, however stiff it
-//! is. And what lies under a stack carries what presses on it: a node is backed by the stiffness of the nodes at the
-//! other side of its closed contacts.
+//! The stiffness of a spring is relative to that of the nodes it acts on, so that a contact neither gives way
+//! nor makes the system ill-conditioned. A node is as stiff as its inertia and its body at rest in the
+//! softest direction: bending for cloth. Two things correct that. A whole body cannot resist more than its
+//! own inertia, however stiff it is. And what lies under a stack carries what presses on it: a node is backed
+//! by the stiffness of the nodes at the other side of its closed contacts.
 
 use super::law::{MIN_BEND, NormalLaw};
 use super::spring::SpringKind;
@@ -15,16 +15,17 @@ use crate::nodes::{CHUNK, NO_NODE};
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 
-/// Compliance of nodes against rigid motion of their bodies, in dt^2 / mass of the body. Larger: softer contacts of
-/// stiff and light bodies. Smaller: they hardly give way, and conjugate gradients take longer.
+/// Compliance of nodes against rigid motion of their bodies, in dt^2 / mass of the body. Larger: softer
+/// contacts of stiff and light bodies. Smaller: they hardly give way, and conjugate gradients take longer.
 const RIGID_COMPLIANCE: f64 = 1.0;
 
-/// Time in which contacts open [s]. Larger: they open more slowly and bounce less. Smaller: they return more energy.
+/// Time in which contacts open [s]. Larger: they open more slowly and bounce less. Smaller: they return more
+/// energy.
 const OPENING_TIME: f64 = 0.03;
 
-/// Share of the gap's room at the iterate at which the static force begins to go on linearly, and its largest value.
-/// Larger: steps that close gaps by more see the linear law, which the update then corrects. Smaller: the exact law at
-/// once, but Newton's method takes shorter steps.
+/// Share of the gap's room at the iterate at which the static force begins to go on linearly, and its largest
+/// value. Larger: steps that close gaps by more see the linear law, which the update then corrects. Smaller:
+/// the exact law at once, but Newton's method takes shorter steps.
 const BEND_SHARE: f64 = 0.5;
 const MAX_BEND: f64 = 0.5;
 
@@ -32,29 +33,29 @@ const MAX_BEND: f64 = 0.5;
 /// contacts, which slip farther before they slide. Smaller: stiffer systems.
 const MIN_GRIP_SHARE: f64 = 0.2;
 
-/// Share of the bound of friction from which on a contact slid in the last time step. Larger: more contacts are first
-/// taken to stick on. Smaller: more are first taken to slide.
+/// Share of the bound of friction from which on a contact slid in the last time step. Larger: more contacts
+/// are first taken to stick on. Smaller: more are first taken to slide.
 const SLIDING: f64 = 0.999;
 
-/// Share of the largest stiffness at rest that counts at edges at their limit. Larger: edges exceed their limit by
-/// less. Smaller: systems are better conditioned.
+/// Share of the largest stiffness at rest that counts at edges at their limit. Larger: edges exceed their
+/// limit by less. Smaller: systems are better conditioned.
 const ALONG: f64 = 0.1;
 
-/// Share of the stiffness of what presses on a node that backs it at its other contacts. Larger: the bottom of a stack
-/// gives way less, but systems are stiffer. Smaller: loads press through to the floor of the law.
+/// Share of the stiffness of what presses on a node that backs it at its other contacts. Larger: the bottom
+/// of a stack gives way less, but systems are stiffer. Smaller: loads press through to the floor of the law.
 const BACKING: f64 = 0.5;
 
-/// Largest ratio of the backed stiffness of a node to its own. Larger: light nodes under heavy ones give way less.
-/// Smaller: systems are better conditioned.
+/// Largest ratio of the backed stiffness of a node to its own. Larger: light nodes under heavy ones give way
+/// less. Smaller: systems are better conditioned.
 const MAX_BACKING: f64 = 30.0;
 
 /// Layers through which backing passes. More: higher stacks are backed. Fewer: less time.
 const BACKING_PASSES: usize = 4;
 
 impl Repulsion {
-    /// Sets the laws and the state of friction. `rate` is 1 / dt [1/s]; positions have one entry per watched node,
-    /// `free` one per node. With positions `ahead`, where inertia leads, open contacts that close there are taken for
-    /// closed in the first solve, and friction is linearized there.
+    /// Sets the laws and the state of friction. `rate` is 1 / dt [1/s]; positions have one entry per watched
+    /// node, `free` one per node. With positions `ahead`, where inertia leads, open contacts that close there
+    /// are taken for closed in the first solve, and friction is linearized there.
     pub fn prepare(
         &mut self,
         model: &DynamicsModel,
@@ -102,7 +103,8 @@ impl Repulsion {
         self.states = states;
     }
 
-    /// Stiffness of watched nodes [N/m]: their `own`, or, if that is larger, a share of that of what presses on them.
+    /// Stiffness of watched nodes [N/m]: their `own`, or, if that is larger, a share of that of what presses
+    /// on them.
     fn backed_stiffness(&self, own: &[f64], free: &[bool], x: &[Vector]) -> Vec<f64> {
         let mut stiffness = own.to_vec();
         let is_closed = |&spring: &usize| {

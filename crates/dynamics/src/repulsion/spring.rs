@@ -5,15 +5,16 @@ use bowknot_geometry::Vector;
 /// What a spring stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpringKind {
-    /// A contact: the gap is n . sum beta_i x_i - offset, with a normal that stays while Newton's method iterates.
+    /// A contact: the gap is n . sum beta_i x_i - offset, with a normal that stays while Newton's method
+    /// iterates.
     Contact,
-    /// An upper limit of a distance, such as of the length of an edge: the gap is -offset - |sum beta_i x_i|, and the
-    /// normal turns with the vertices.
+    /// An upper limit of a distance, such as of the length of an edge: the gap is -offset - |sum beta_i x_i|,
+    /// and the normal turns with the vertices.
     Limit,
 }
 
-/// A contact between up to four vertices, or an upper limit of a distance, as a nonlinear spring. Its force is a
-/// function of the gap, see [`crate::repulsion`].
+/// A contact between up to four vertices, or an upper limit of a distance, as a nonlinear spring. Its force
+/// is a function of the gap, see [`crate::repulsion`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RepulsionSpring {
     /// What it stands for.
@@ -25,25 +26,26 @@ pub struct RepulsionSpring {
     pub weights: [f64; 4],
     /// Unit normal n [1], in which the gap opens. For a limit it is used only where the distance is 0.
     pub normal: Vector,
-    /// Length that is subtracted to give the gap [m]: 0 between primitives, n . p for a half-space through p, minus the
-    /// largest distance for a limit.
+    /// Length that is subtracted to give the gap [m]: 0 between primitives, n . p for a half-space through p,
+    /// minus the largest distance for a limit.
     pub offset: f64,
     /// Gap from which on nothing acts [m].
     pub reach: f64,
     /// Gap at which the force becomes infinite [m], below the reach.
     pub floor: f64,
-    /// Gap at the start of the time step [m]. The drag pulls to it, and friction at the start is a share of the force
-    /// there.
+    /// Gap at the start of the time step [m]. The drag pulls to it, and friction at the start is a share of
+    /// the force there.
     pub start_gap: f64,
-    /// Stiffness at the reach in units of 1 / sum beta_i^2 / K_i over the free vertices [1]. K_i is the stiffness of a
-    /// vertex: for a contact inertia (mass / dt^2) plus the body's stiffness at rest in its softest direction, limited
-    /// by the inertia of the whole body; for a limit inertia plus a share of the stiffness in the stiffest direction.
-    /// Nearer to the floor a contact is stiffer without bound.
+    /// Stiffness at the reach in units of 1 / sum beta_i^2 / K_i over the free vertices [1]. K_i is the
+    /// stiffness of a vertex: for a contact inertia (mass / dt^2) plus the body's stiffness at rest in its
+    /// softest direction, limited by the inertia of the whole body; for a limit inertia plus a share of the
+    /// stiffness in the stiffest direction. Nearer to the floor a contact is stiffer without bound.
     pub stiffness: f64,
     /// Coefficient of friction mu [1]; 0: the force is along the normal. A limit has none.
     pub friction: f64,
-    /// Friction at the start of the time step on the side that the normal points to, as a multiple of the normal force
-    /// at the start [1]. Callers keep it from the end of the last time step, see
-    /// [`crate::Dynamics::contact_forces`]; with zero, a contact that sticks first slips a little in each time step.
+    /// Friction at the start of the time step on the side that the normal points to, as a multiple of the
+    /// normal force at the start [1]. Callers keep it from the end of the last time step, see
+    /// [`crate::Dynamics::contact_forces`]; with zero, a contact that sticks first slips a little in each
+    /// time step.
     pub friction_ratio: Vector,
 }

@@ -28,8 +28,8 @@ pub(crate) struct Repulsion {
     anchors: Vec<Vector>,
     /// What changes from solve to solve.
     pub(super) states: Vec<SpringState>,
-    /// Whether the next linearization takes sliding friction for as stiff in its direction as across it. That is a
-    /// majorizer of its energy: steps are shorter, but do not overshoot.
+    /// Whether the next linearization takes sliding friction for as stiff in its direction as across it. That
+    /// is a majorizer of its energy: steps are shorter, but do not overshoot.
     pub majorizes_friction: bool,
     /// The springs that pushed at the last linearization.
     pub(super) linear: LinearSprings,
@@ -121,12 +121,12 @@ impl Repulsion {
         });
     }
 
-    /// Notes what is added to each gap because of prescribed nodes, with watched nodes at `x`, those that are not
-    /// `free` at their ends; `free` has one entry per node.
+    /// Notes what is added to each gap because of prescribed nodes, with watched nodes at `x`, those that are
+    /// not `free` at their ends; `free` has one entry per node.
     ///
-    /// Where prescribed nodes come nearer than the reach, the free nodes of their side would have to make up for it.
-    /// With a closest point near a prescribed node they have a short lever, and would have to go far. So a prescribed
-    /// node counts as if it were at the reach.
+    /// Where prescribed nodes come nearer than the reach, the free nodes of their side would have to make up
+    /// for it. With a closest point near a prescribed node they have a short lever, and would have to go far.
+    /// So a prescribed node counts as if it were at the reach.
     pub(super) fn note_lacking(&mut self, free: &[bool], x: &[Vector]) {
         for (spring, lacking) in self.lacking.iter_mut().enumerate() {
             let (s, nodes, places) = (&self.springs[spring], &self.nodes[spring], &self.places[spring]);
@@ -138,7 +138,8 @@ impl Repulsion {
                 if prescribed.clone().next().is_none() || !(0..4).filter(on_side).any(is_free) {
                     continue;
                 }
-                // The other side's closest point, with the sign of its weights; obstacles are one side of a pair.
+                // The other side's closest point, with the sign of its weights; obstacles are one side of a
+                // pair.
                 let others = (0..4).filter(|&k| nodes[k] != NO_NODE && sign * s.weights[k] < 0.0);
                 let opposite: Vector = others.map(|k| x[places[k] as usize] * s.weights[k]).sum();
                 let opposite = opposite + self.fixed[spring];
@@ -186,7 +187,8 @@ impl Repulsion {
         sides
     }
 
-    /// Forces of the springs with watched nodes at `x` [N], by spring. Friction is bounded by the normal force there.
+    /// Forces of the springs with watched nodes at `x` [N], by spring. Friction is bounded by the normal
+    /// force there.
     pub fn forces(&self, x: &[Vector]) -> Vec<Vector> {
         let force = |spring: usize| {
             let (state, s) = (&self.states[spring], &self.springs[spring]);
@@ -214,8 +216,8 @@ impl Repulsion {
         forces
     }
 
-    /// Joins the components that springs join, and holds those that springs join to obstacles and half-spaces. All springs
-    /// count, or those `pushing` at the last linearization.
+    /// Joins the components that springs join, and holds those that springs join to obstacles and
+    /// half-spaces. All springs count, or those `pushing` at the last linearization.
     pub fn join(&self, model: &DynamicsModel, groups: &mut Groups, pushing: bool) {
         for ((spring, nodes), state) in self.springs.iter().zip(&self.nodes).zip(&self.states) {
             if pushing && !state.pushes() {

@@ -1,16 +1,16 @@
 //! The state of a spring between two solves, and Coulomb's law.
 //!
-//! With the slip u since the start of the time step, the stiffness G of sticking, and the friction tau at the start,
-//! friction is tau - G u, cut to the length of the bound: the return mapping of perfect plasticity. It is minus the
-//! derivative of the energy
+//! With the slip u since the start of the time step, the stiffness G of sticking, and the friction tau at the
+//! start, friction is tau - G u, cut to the length of the bound: the return mapping of perfect plasticity. It
+//! is minus the derivative of the energy
 //!
 //! ```text
 //! sticking, |tau - G u| <= bound    |tau - G u|^2 / (2 G)
 //! sliding                           bound (|tau - G u| - bound / 2) / G
 //! ```
 //!
-//! a function of Huber's form. The bound is mu times the normal force at the end of the last Newton step: if it
-//! followed the gap, the matrix would not be symmetric, and there would be no energy.
+//! a function of Huber's form. The bound is mu times the normal force at the end of the last Newton step: if
+//! it followed the gap, the matrix would not be symmetric, and there would be no energy.
 
 use super::law::{NormalLaw, Push};
 use bowknot_geometry::Vector;
@@ -70,8 +70,8 @@ impl SpringState {
         if self.predicted { self.law.predicted(gap) } else { self.law.at(gap) }
     }
 
-    /// Friction linearized at a slip `at`; `across` projects on the tangent plane. Where it slides, friction is not
-    /// stiff in its own direction; with `majorizes` it counts as stiff as across it.
+    /// Friction linearized at a slip `at`; `across` projects on the tangent plane. Where it slides, friction
+    /// is not stiff in its own direction; with `majorizes` it counts as stiff as across it.
     pub fn linear_rub(&self, at: Vector, across: &Matrix3<f64>, majorizes: bool) -> LinearRub {
         let rub = self.rub(&at, self.bound);
         let matrix = match rub.sliding {

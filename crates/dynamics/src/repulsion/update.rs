@@ -7,15 +7,15 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// Factor of a bend that a contact was pressed below. Smaller: the exact law is reached in fewer iterations, but each
-/// step is to a stiffer law.
+/// Factor of a bend that a contact was pressed below. Smaller: the exact law is reached in fewer iterations,
+/// but each step is to a stiffer law.
 const BEND_FACTOR: f64 = 0.5;
 
 impl Repulsion {
-    /// Takes over watched nodes at `x`, the end of a Newton step. Bounds of friction become those of the normal
-    /// forces there, laws that a contact was pressed below the bend of bend later, and predictions end. Returns by
-    /// how much the linear forces of the step were off, summed over springs, as a share of the sum of the normal
-    /// forces at `x`.
+    /// Takes over watched nodes at `x`, the end of a Newton step. Bounds of friction become those of the
+    /// normal forces there, laws that a contact was pressed below the bend of bend later, and predictions
+    /// end. Returns by how much the linear forces of the step were off, summed over springs, as a share of
+    /// the sum of the normal forces at `x`.
     pub fn update(&mut self, x: &[Vector]) -> f64 {
         let mut states = std::mem::take(&mut self.states);
         let of_springs = states.par_iter_mut().enumerate().with_min_len(CHUNK);

@@ -14,7 +14,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 const DT: f64 = 0.02;
 
-/// So many that a time step is solved: intermediate linear solves are inexact, and each solver errs in its own way.
+/// So many that a time step is solved: intermediate linear solves are inexact, and each solver errs in its
+/// own way.
 const NEWTON_ITERATIONS: usize = 10;
 
 /// Largest difference of two solvers as a share of the way: the forces of the contacts may be off by 0.2 %,

@@ -44,8 +44,8 @@ fn springs(count: u32, stiffness: f64) -> Vec<RepulsionSpring> {
         .collect()
 }
 
-/// Makes a time step as callers do: springs know the gaps at its start, and carry friction from the last one. Returns
-/// the contact forces at its end.
+/// Makes a time step as callers do: springs know the gaps at its start, and carry friction from the last one.
+/// Returns the contact forces at its end.
 fn step(
     dynamics: &mut Dynamics,
     springs: &mut [RepulsionSpring],
@@ -96,7 +96,8 @@ fn two_sheets_pushed_together_come_nearer_by_load_over_stiffness() {
         assert!((pushed / load - 1.0).abs() < 1e-3, "{pushed} of {load}");
         (0..count).map(|k| x[k + count].z - x[k].z).sum::<f64>() / count as f64 / GAP
     };
-    // The law, and loads over stiffness: a third of the weight, twice that, both by a spring of another stiffness.
+    // The law, and loads over stiffness: a third of the weight, twice that, both by a spring of another
+    // stiffness.
     let law = |w: f64| (1.0 - w) / (w * w);
     let [light, heavy, stiff] = [share(0.02, 1.0), share(0.04, 1.0), share(0.02, 10.0)];
     assert!(heavy < light && light < stiff && stiff < 1.0 && heavy > 0.3, "{light} {heavy} {stiff}");
@@ -311,8 +312,8 @@ fn removed_springs_change_no_bit_and_bad_ones_are_refused() {
     assert!(problem.starts_with("its weights"), "{problem}");
 }
 
-/// A contact near a held vertex that is nearer than the reach, on one that is free: to keep the gap the free vertex
-/// would have to rise by a hundred gaps. It is asked for no more than the gap in its own place.
+/// A contact near a held vertex that is nearer than the reach, on one that is free: to keep the gap the free
+/// vertex would have to rise by a hundred gaps. It is asked for no more than the gap in its own place.
 #[test]
 fn springs_do_not_throw_what_hangs_on_held_vertices() {
     let rest = vec![

@@ -122,7 +122,8 @@ fn sag(cells: [usize; 3], poisson_ratio: f64, with_middles: bool) -> f64 {
 
 #[test]
 fn quadratic_tetrahedra_bend_where_linear_ones_lock() {
-    // One and two elements thick, at Poisson's ratios of rubber. A direct solution of linear elasticity has the same numbers.
+    // One and two elements thick, at Poisson's ratios of rubber. A direct solution of linear elasticity has
+    // the same numbers.
     for (cells, ratio, expected) in [
         ([10, 1, 1], 0.45, 0.905),
         ([20, 2, 2], 0.45, 0.959),

@@ -34,7 +34,8 @@ proptest! {
         for k in 0..3 {
             prop_assert!(exceeds([bounds.min[k], -radius], inflated.min[k]));
             prop_assert!(exceeds([-bounds.max[k], -radius], -inflated.max[k]));
-            prop_assert!((inflated.min[k] - (bounds.min[k] - radius)).abs() <= 4e-16 * (bounds.min[k].abs() + radius) + 1e-300);
+            let rounding = 4e-16 * (bounds.min[k].abs() + radius) + 1e-300;
+            prop_assert!((inflated.min[k] - (bounds.min[k] - radius)).abs() <= rounding);
         }
     }
 

@@ -35,8 +35,10 @@ fn every_problem_names_its_element_and_place() {
             "triangle 5 names vertex 9, but there are only 6 vertices",
             "triangle 2 (vertices 0, 2, 4) has zero area, at (1, 1, 0.5)",
             "triangle 4 (vertices 1, 1, 2) has zero area, at (1, 0.3333333333333333, 0.5)",
-            "triangle 3 repeats triangle 1 (vertices 3, 0, 2), at (0.3333333333333333, 0.6666666666666666, 0.5)",
-            "triangle 6 repeats triangle 1 (vertices 2, 3, 0), at (0.3333333333333333, 0.6666666666666666, 0.5)",
+            "triangle 3 repeats triangle 1 (vertices 3, 0, 2), at (0.3333333333333333, 0.6666666666666666, \
+             0.5)",
+            "triangle 6 repeats triangle 1 (vertices 2, 3, 0), at (0.3333333333333333, 0.6666666666666666, \
+             0.5)",
             "vertex 5 belongs to no triangle, at (NaN, 0, 0)",
         ]
     );

@@ -51,8 +51,8 @@ impl TopologyBuilder {
     /// Builds the topology. O(n log n).
     ///
     /// # Errors
-    /// One error for each index out of range and for each vertex that an element repeats; more vertices, triangles,
-    /// edges or particles than `u32::MAX`.
+    /// One error for each index out of range and for each vertex that an element repeats; more vertices,
+    /// triangles, edges or particles than `u32::MAX`.
     pub fn build(self) -> Result<Topology, Errors<TopologyError>> {
         let Self { vertex_count, triangles, strand_edges: strands, particles } = self;
         let counts =

@@ -32,8 +32,8 @@ pub enum TopologyError {
     },
 }
 
-/// Refuses numbers of elements that an index of 32 bits cannot count: larger ones would wrap around, and elements
-/// would be taken for others. The largest index means "none" in many tables.
+/// Refuses numbers of elements that an index of 32 bits cannot count: larger ones would wrap around, and
+/// elements would be taken for others. The largest index means "none" in many tables.
 pub fn check_count(elements: &'static str, count: usize) -> Option<TopologyError> {
     (count > u32::MAX as usize).then_some(TopologyError::TooMany { elements, count })
 }

@@ -10,8 +10,8 @@ const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 /// Edges of a tetrahedron with vertices 0 to 3, in the order of the nodes 4 to 9 of one of ten nodes.
 pub const TETRAHEDRON_EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// Appends a vertex in the middle of each edge to the `positions` of `tets`, and returns tetrahedra of ten nodes: the corners,
-/// then the middles of [`TETRAHEDRON_EDGES`].
+/// Appends a vertex in the middle of each edge to the `positions` of `tets`, and returns tetrahedra of ten
+/// nodes: the corners, then the middles of [`TETRAHEDRON_EDGES`].
 ///
 /// # Panics
 /// If a vertex is not among the positions.
@@ -30,10 +30,11 @@ pub fn add_edge_middles(positions: &mut Vec<Point>, tets: &[[u32; 4]]) -> Vec<[u
     tets.iter().map(with_middles).collect()
 }
 
-/// The eight tetrahedra into which nodes in the middles of the edges divide one (Bey 1995, "Tetrahedral grid refinement").
+/// The eight tetrahedra into which nodes in the middles of the edges divide one (Bey 1995, "Tetrahedral grid
+/// refinement").
 ///
-/// `nodes` are the corners, then the middles of [`TETRAHEDRON_EDGES`]. Those at the corners come first; all have
-/// positive volume where the one of the corners has.
+/// `nodes` are the corners, then the middles of [`TETRAHEDRON_EDGES`]. Those at the corners come first; all
+/// have positive volume where the one of the corners has.
 pub fn divide_tetrahedron(nodes: &[u32; 10]) -> [[u32; 4]; 8] {
     const PARTS: [[usize; 4]; 8] = [
         [0, 4, 5, 6],

@@ -185,7 +185,8 @@ impl Elements {
         match TYPES.iter().find(|entry| entry.0 == kind) {
             Some(&(_, nodes, becomes, _)) => Ok(Reading::Known { nodes, becomes }),
             None if cursor.is_binary() => Err(cursor.fault_before(format!(
-                "element type {kind} is unknown, so that its end is too: save it as text, or without such elements"
+                "element type {kind} is unknown, so that its end is too: save it as text, or without such \
+                 elements"
             ))),
             None => Ok(Reading::Unknown),
         }

@@ -110,7 +110,8 @@ fn format(cursor: &mut Cursor<'_>) -> Result<Version, Fault> {
         _ => {
             let given = number.unwrap_or("missing");
             let message = format!(
-                "version {given} is not read, only 2.2 and 4.1: convert it with `gmsh IN.msh -save -format msh41 -o OUT.msh`"
+                "version {given} is not read, only 2.2 and 4.1: convert it with `gmsh IN.msh -save -format \
+                 msh41 -o OUT.msh`"
             );
             return Err(cursor.fault_before(message));
         }

@@ -6,8 +6,9 @@ use crate::mesh::MeshView;
 use std::io::Write;
 use std::path::Path;
 
-/// Writes nodes, tetrahedra, triangles, quadrilaterals, lines and points as a Gmsh file, version 2.2, text; atomically.
-/// Coordinates round-trip exactly, and nodes keep the order of the vertices. Bodies and obstacles are not written.
+/// Writes nodes, tetrahedra, triangles, quadrilaterals, lines and points as a Gmsh file, version 2.2, text;
+/// atomically. Coordinates round-trip exactly, and nodes keep the order of the vertices. Bodies and obstacles
+/// are not written.
 ///
 /// # Errors
 /// The system's refusal, with the path.

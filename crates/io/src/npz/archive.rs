@@ -76,7 +76,8 @@ fn read_numbers<R: Read, const N: usize>(
     Ok(values)
 }
 
-/// Reads an array. Its header is read as a whole before it is parsed: the parser believes any length that it claims.
+/// Reads an array. Its header is read as a whole before it is parsed: the parser believes any length that it
+/// claims.
 fn read_array(mut reader: impl Read) -> Result<ArrayD<Number>, ReadNpyError> {
     let refuse = |message: String| ReadNpyError::Io(std::io::Error::new(ErrorKind::InvalidData, message));
     // Magic, version, and the length of the header in two bytes, from version 2 on in four.

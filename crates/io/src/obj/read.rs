@@ -15,8 +15,8 @@ use std::path::Path;
 /// smoothing groups become [`Mesh::surface`].
 ///
 /// Indices count from 1, or backward from the last one read when negative; a `\` at the end of a line
-/// continues it. Two comments count, as [`super::write_obj`] writes them: `# obstacle-from N` makes obstacles of
-/// the vertices from N on, counted from 0, and a name after `# nameless` stands for none.
+/// continues it. Two comments count, as [`super::write_obj`] writes them: `# obstacle-from N` makes obstacles
+/// of the vertices from N on, counted from 0, and a name after `# nameless` stands for none.
 ///
 /// # Errors
 /// A missing or malformed file, coordinates that are not finite, indices of vertices, texture coordinates or

@@ -13,8 +13,8 @@ use std::path::Path;
 
 /// Reads a PLY file: `vertex` (x y z, and `obstacle`, `body` if there), `face` (a list `vertex_indices` or
 /// `vertex_index` of any integer type, as fans around the first vertex), `edge` (`vertex1`, `vertex2`); other
-/// elements and properties are skipped. Vertices of no face and no edge are particles. Names of bodies are read as
-/// [`write_ply`](crate::write_ply) writes them.
+/// elements and properties are skipped. Vertices of no face and no edge are particles. Names of bodies are
+/// read as [`write_ply`](crate::write_ply) writes them.
 ///
 /// # Errors
 /// A missing, malformed or truncated file, coordinates that are not finite, indices of vertices that do not

@@ -38,8 +38,10 @@ pub fn write_ply(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
         let texture_header = if texture.is_some() { "property double s\nproperty double t\n" } else { "" };
         write!(
             out,
-            "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty double x\nproperty double y\n\
-             property double z\nproperty uchar obstacle\nproperty int body\n{texture_header}element face {faces}\n\
+            "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty double x\nproperty double \
+             y\n\
+             property double z\nproperty uchar obstacle\nproperty int body\n{texture_header}element face \
+             {faces}\n\
              property list uchar int vertex_indices\n",
             names.collect::<String>(),
             mesh.positions.len()

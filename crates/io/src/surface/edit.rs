@@ -1,7 +1,7 @@
 //! Surfaces that follow what happens to their mesh: triangles are dropped, vertices renumbered, meshes put
 //! together and taken apart.
 
-use super::surface::{Corner, Labels, NONE, Surface};
+use super::polygons::{Corner, Labels, NONE, Surface};
 
 impl Surface {
     /// Renumbers the vertices.
@@ -21,8 +21,8 @@ impl Surface {
     }
 
     /// Splits triangles, each a polygon of its own, along their first edge: triangle `t` with corners a, b, c
-    /// becomes a, v, c; v, w, c; .. for the vertices v, w, .. that are given with their places from a (0) to b
-    /// (1). The first piece stays in the triangle's place, the others are appended, split by split. Texture
+    /// becomes a, v, c; v, w, c; .. for the vertices v, w, .. that are given with their places from a (0) to
+    /// b (1). The first piece stays in the triangle's place, the others are appended, split by split. Texture
     /// coordinates are interpolated. `start` is the corner, 0 to 2, that is a.
     pub fn split_triangles(&mut self, splits: &[EdgeSplit]) {
         let polygon_of = self.polygons_of_triangles();
@@ -93,8 +93,8 @@ impl Surface {
         }
     }
 
-    /// Takes the surface apart into `count` ones: a polygon goes to the part of its first vertex, and vertex v
-    /// becomes vertex `local[v]`. A part without polygons is none.
+    /// Takes the surface apart into `count` ones: a polygon goes to the part of its first vertex, and vertex
+    /// v becomes vertex `local[v]`. A part without polygons is none.
     pub fn split(&self, part_of: &[u32], local: &[u32], count: usize) -> Vec<Option<Self>> {
         let mut parts: Vec<Self> = vec![Self::default(); count];
         let mut copier = Copier::new(self);

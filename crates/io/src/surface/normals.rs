@@ -1,11 +1,12 @@
 //! Normals of a surface in any state.
 
-use super::surface::{Corner, Surface};
+use super::polygons::{Corner, Surface};
 use bowknot_geometry::{Point, Vector};
 
 impl Surface {
     /// The normals that corners refer to, of length 1: the mean of the normals of the polygons that share
-    /// them, weighted by the angles of their corners, as modeling tools do it. Where that is zero, the z axis.
+    /// them, weighted by the angles of their corners, as modeling tools do it. Where that is zero, the z
+    /// axis.
     pub fn normals(&self, positions: &[Point]) -> Vec<Vector> {
         let mut sums = vec![Vector::zeros(); self.normal_count()];
         for polygon in self.polygons() {

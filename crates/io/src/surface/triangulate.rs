@@ -1,10 +1,11 @@
 //! Polygons whose fans do not fill them.
 //!
-//! The triangles of a mesh are the fans of its polygons around their first corners. Where a polygon is concave, or has
-//! corners on straight sides, such a fan may leave the outline or have triangles without an area. Then the polygon begins with
-//! another of its corners, if the fan around that one fills it, else triangles take its place.
+//! The triangles of a mesh are the fans of its polygons around their first corners. Where a polygon is
+//! concave, or has corners on straight sides, such a fan may leave the outline or have triangles without an
+//! area. Then the polygon begins with another of its corners, if the fan around that one fills it, else
+//! triangles take its place.
 
-use super::surface::{Corner, Surface};
+use super::polygons::{Corner, Surface};
 use crate::mesh::Mesh;
 use bowknot_geometry::{Point, Vector};
 use earcut::Earcut;
@@ -13,14 +14,16 @@ use std::collections::HashMap;
 /// Corners that a polygon has at most for its fans around all of them to be tried.
 const MOST_CORNERS: usize = 64;
 
-/// Sine of the angle between two sides up to which their corner is on a straight line. Files of single precision have such
-/// corners 1e-7 beside it.
+/// Sine of the angle between two sides up to which their corner is on a straight line. Files of single
+/// precision have such corners 1e-7 beside it.
 const STRAIGHT: f64 = 1e-6;
 
-/// Twice the area of a triangle over its longest side squared, below which another fan is preferred if it is better.
+/// Twice the area of a triangle over its longest side squared, below which another fan is preferred if it is
+/// better.
 const THIN: f64 = 1e-3;
 
-/// Height of corners over the mean plane of a polygon, in the root of twice its area, from which on it has no plane outline.
+/// Height of corners over the mean plane of a polygon, in the root of twice its area, from which on it has no
+/// plane outline.
 const WARPED: f64 = 0.2;
 
 /// Relative error of areas up to which triangles fill a polygon.
@@ -52,8 +55,9 @@ impl PolygonFaults {
 }
 
 impl Mesh {
-    /// Makes the triangles fill the polygons of the surface, see [`Surface`]. Polygons that are convex keep their
-    /// first corners, unless their triangles would be slivers. Nothing changes for a mesh without polygons.
+    /// Makes the triangles fill the polygons of the surface, see [`Surface`]. Polygons that are convex keep
+    /// their first corners, unless their triangles would be slivers. Nothing changes for a mesh without
+    /// polygons.
     pub fn triangulate(&mut self) -> PolygonFaults {
         let mut faults = PolygonFaults::default();
         let Some(surface) = &self.surface else { return faults };
@@ -115,8 +119,8 @@ impl Surface {
 /// What fills a polygon.
 #[derive(Debug, PartialEq)]
 enum Filling {
-    /// The fan around a corner. If no triangles fill it, that around the first: what is wrong with one of its triangles is
-    /// found with all others.
+    /// The fan around a corner. If no triangles fill it, that around the first: what is wrong with one of its
+    /// triangles is found with all others.
     Fan(usize),
     /// Triangles of its corners.
     Triangles(Vec<[u32; 3]>),
@@ -159,8 +163,8 @@ impl Filling {
     }
 }
 
-/// The least ratio of twice the area of a triangle to its longest side squared in a fan, whose sides from the apex these are;
-/// not above 0 if a triangle faces away from the `normal`, or the fan goes around its apex.
+/// The least ratio of twice the area of a triangle to its longest side squared in a fan, whose sides from the
+/// apex these are; not above 0 if a triangle faces away from the `normal`, or the fan goes around its apex.
 fn fan_quality(mut sides: impl Iterator<Item = Vector>, normal: &Vector) -> f64 {
     let Some(mut before) = sides.next() else { return 0.0 };
     let (mut least, mut angle) = (f64::INFINITY, 0.0);
@@ -174,8 +178,8 @@ fn fan_quality(mut sides: impl Iterator<Item = Vector>, normal: &Vector) -> f64 
     if angle < std::f64::consts::TAU { least } else { 0.0 }
 }
 
-/// Twice the area of a polygon times its mean normal [m^2] (Newell's formula; Sutherland, Sproull, Schumacker, "A
-/// characterization of ten hidden-surface algorithms", Computing Surveys 6, 1974).
+/// Twice the area of a polygon times its mean normal [m^2] (Newell's formula; Sutherland, Sproull,
+/// Schumacker, "A characterization of ten hidden-surface algorithms", Computing Surveys 6, 1974).
 fn area_vector(outline: &[Point]) -> Vector {
     let fan = outline[1..].windows(2).map(|pair| (pair[0] - outline[0]).cross(&(pair[1] - outline[0])));
     fan.sum()

@@ -162,7 +162,8 @@ fn obstacles_at_one_place_are_absent() {
 #[test]
 fn meshes_without_vertices_are_told_from_damaged_files() {
     let folder = folder();
-    let header = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    let header = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty \
+                  float z\nend_header\n";
     for (name, content, is_empty) in [
         ("a.obj", "# exported\no Plate\n", true),
         ("b.obj", "", false),

@@ -14,7 +14,8 @@ fn obj_round_trips_to_the_same_bits() {
 #[test]
 fn obj_statements_of_every_kind() {
     let folder = folder();
-    let text = "# comment\r\nmtllib a.mtl\no caf\u{e9}\nv 0 0 0\nv 1. .5 1e-3 1.0 # weight\nv 0 1 0 0.5 0.5 0.5\nv -1 \\\n 2 3\n\
+    let text = "# comment\r\nmtllib a.mtl\no caf\u{e9}\nv 0 0 0\nv 1. .5 1e-3 1.0 # weight\nv 0 1 0 0.5 0.5 \
+                0.5\nv -1 \\\n 2 3\n\
                 vn 0 0 1\nvt 0 0\nf 1/1/1 2//1 3/1 -1\nl 1 2 -1\np 1 4\ns off\nusemtl x\nf -4 -3 -2\n";
     let mesh = read_obj(&write(&folder, "a.obj", text), &Import::default()).unwrap();
     assert_eq!(mesh.positions.len(), 4);

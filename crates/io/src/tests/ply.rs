@@ -3,10 +3,13 @@
 use super::*;
 
 /// A file made by hand, with properties that are not ours.
-pub const ASCII: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\n\
-                     property float z\nproperty uchar red\nelement face 2\nproperty list uchar uint vertex_index\n\
-                     property float quality\nelement edge 1\nproperty short vertex1\nproperty short vertex2\nend_header\n\
-                     0 0 0 255\n1. 0 0 0\n\n1 1 .5 0\n0 1 0 0\n3 0 1 2 0.5\n4 0 1 2 3 0.5\n0 3\n";
+pub const ASCII: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float \
+                         x\nproperty float y\n\
+                         property float z\nproperty uchar red\nelement face 2\nproperty list uchar uint \
+                         vertex_index\n\
+                         property float quality\nelement edge 1\nproperty short vertex1\nproperty short \
+                         vertex2\nend_header\n\
+                         0 0 0 255\n1. 0 0 0\n\n1 1 .5 0\n0 1 0 0\n3 0 1 2 0.5\n4 0 1 2 3 0.5\n0 3\n";
 
 #[test]
 fn ply_round_trips_to_the_same_bits() {
@@ -32,8 +35,10 @@ fn ply_ascii_with_foreign_properties() {
 #[test]
 fn ply_big_endian_floats_and_short_indices() {
     let folder = folder();
-    let mut bytes = b"ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float32 x\nproperty float64 y\n\
-                      property int16 z\nelement strange 1\nproperty list int32 float32 values\nelement face 1\n\
+    let mut bytes = b"ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float32 x\nproperty \
+                      float64 y\n\
+                      property int16 z\nelement strange 1\nproperty list int32 float32 values\nelement face \
+                      1\n\
                       property uchar flags\nproperty list uint16 int16 vertex_indices\nend_header\n"
         .to_vec();
     for [x, y, z] in [[0.0, 0.0, 0.0], [1.5, 0.25, -7.0], [0.0, 1.0, 300.0]] {
@@ -129,7 +134,8 @@ fn names_of_bodies_are_comments() {
     let again = read_ply(&path, &Import::default()).unwrap();
     assert_eq!(again.names, ["left  sleeve", " \u{e9}toffe element x", ""]);
     // Others' comments are no names.
-    let other = "ply\nformat ascii 1.0\ncomment body 7 x\ncomment body of water\ncomment body 0 a\r\nelement vertex 1\n\
+    let other = "ply\nformat ascii 1.0\ncomment body 7 x\ncomment body of water\ncomment body 0 a\r\nelement \
+                 vertex 1\n\
                  property float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n";
     let path = write(&folder, "b.ply", other);
     assert_eq!(read_ply(&path, &Import::default()).unwrap().names, ["a"]);

@@ -23,8 +23,8 @@ fn area(mesh: &Mesh, [a, b, c]: [u32; 3]) -> Vector {
     (b - a).cross(&(c - a)) / 2.0
 }
 
-/// Fills the polygon of these corners, and asserts that triangles of all of them fill it without overlap: they all face its
-/// side, and have its area together.
+/// Fills the polygon of these corners, and asserts that triangles of all of them fill it without overlap:
+/// they all face its side, and have its area together.
 fn assert_filled(positions: Vec<Point>, what: &str) -> Mesh {
     let mut mesh = polygon(positions);
     let fan: Vector = mesh.triangles.iter().map(|&t| area(&mesh, t)).sum();

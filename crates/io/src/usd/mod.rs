@@ -52,9 +52,9 @@ pub fn write_usda(
     write_atomic(path, |out| {
         write!(
             out,
-            "#usda 1.0\n(\n    defaultPrim = \"World\"\n    doc = \"Written by Bowknot {}\"\n    endTimeCode = {}\n    \
-             framesPerSecond = {rate}\n    metersPerUnit = 1\n    startTimeCode = 0\n    timeCodesPerSecond = {rate}\n    \
-             upAxis = \"Z\"\n)\n\ndef Xform \"World\"\n{{\n",
+            "#usda 1.0\n(\n    defaultPrim = \"World\"\n    doc = \"Written by Bowknot {}\"\n    endTimeCode \
+             = {}\n    framesPerSecond = {rate}\n    metersPerUnit = 1\n    startTimeCode = 0\n    \
+             timeCodesPerSecond = {rate}\n    upAxis = \"Z\"\n)\n\ndef Xform \"World\"\n{{\n",
             env!("CARGO_PKG_VERSION"),
             frames.saturating_sub(1)
         )?;
@@ -178,7 +178,8 @@ impl<'a> Prim<'a> {
                 let width = body.width as f32;
                 write!(
                     out,
-                    "        float[] widths = [{width:?}] (\n            interpolation = \"constant\"\n        )\n"
+                    "        float[] widths = [{width:?}] (\n            interpolation \
+                     = \"constant\"\n        )\n"
                 )?;
             }
             // A constant width is read by some programs as that of the first point only.

@@ -116,7 +116,8 @@ impl Renderer {
     }
 }
 
-/// Sides of the shape of `size`, in whole 16 pixels, of which the device can hand over all pixels in `most` bytes.
+/// Sides of the shape of `size`, in whole 16 pixels, of which the device can hand over all pixels in `most`
+/// bytes.
 fn fitting(size: [u32; 2], most: u64) -> [u32; 2] {
     let scale = (most as f64 / download_bytes(size) as f64).sqrt();
     size.map(|side| ((f64::from(side) * scale) as u32 / 16 * 16).max(MIN_SIZE))

@@ -1,4 +1,5 @@
-//! What a modeling tool writes beside the shirt's triangles: texture coordinates, one group per panel, materials.
+//! What a modeling tool writes beside the shirt's triangles: texture coordinates, one group per panel,
+//! materials.
 
 use bowknot_scene::geometry::{Point, UnionFind};
 use bowknot_scene::io::{Corner, Labels, Surface};
@@ -12,8 +13,8 @@ pub const MATERIALS: &str = "newmtl body\nKd 0.75 0.3 0.25\nnewmtl sleeves\nKd 0
 /// Lateral distance from which on a panel is a sleeve [m].
 const SLEEVE: f64 = 0.2;
 
-/// The panels of the shirt [m, z up] with their names and texture coordinates: a quarter of the texture for each,
-/// one unit a meter. The file of the materials is in `folder`.
+/// The panels of the shirt [m, z up] with their names and texture coordinates: a quarter of the texture for
+/// each, one unit a meter. The file of the materials is in `folder`.
 pub fn of_panels(shirt: &TriangleMesh, folder: &Path) -> Surface {
     let mut panels = UnionFind::new(shirt.positions.len());
     shirt.triangles.iter().for_each(|t| (1..3).for_each(|k| panels.join(t[0], t[k])));

@@ -18,7 +18,7 @@ pub(super) fn scene(scale: f64) -> Scene {
     let segments = (62.0 * scale).round().max(4.0) as usize;
     let count = (1000.0 * scale).round().max(8.0) as usize;
     let (radius, length) = (0.1, 0.3);
-    // The roots stand off the ball, whose own edges lie below its sphere, by some desired distances.
+    // The roots stand off the ball, whose own edges lie below its sphere, by some contact distances.
     let strands = Strands {
         count,
         length,

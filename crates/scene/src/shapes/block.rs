@@ -9,10 +9,11 @@ use serde::{Deserialize, Serialize};
 
 /// A box about the origin, filled with tetrahedra: a grid of cells, each divided into six.
 ///
-/// Each cell has a diagonal that its six tetrahedra share (Kuhn 1960, "Some combinatorial lemmas in topology"). Cells are mirror
-/// images of their neighbors, so that their faces agree and no direction is preferred: parallel diagonals make a block twice
-/// as stiff in bending. From both ends the first diagonals point inward, so that no tetrahedron has two faces on the surface
-/// where there are two cells or more each way.
+/// Each cell has a diagonal that its six tetrahedra share (Kuhn 1960, "Some combinatorial lemmas in
+/// topology"). Cells are mirror images of their neighbors, so that their faces agree and no direction is
+/// preferred: parallel diagonals make a block twice as stiff in bending. From both ends the first diagonals
+/// point inward, so that no tetrahedron has two faces on the surface where there are two cells or more each
+/// way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Block {
@@ -89,8 +90,8 @@ pub(super) fn grid(n: [u32; 3], place: impl Fn([u32; 3]) -> Point) -> Mesh {
     mesh
 }
 
-/// Whether the diagonals of the cells at `index` of `n` along an axis start at the upper end: not in the first, in the last, and
-/// alternately between; about the middle of an odd number two neighbors are alike.
+/// Whether the diagonals of the cells at `index` of `n` along an axis start at the upper end: not in the
+/// first, in the last, and alternately between; about the middle of an odd number two neighbors are alike.
 fn starts_above(index: u32, n: u32) -> bool {
     if 2 * index < n { index % 2 == 1 } else { (n - 1 - index).is_multiple_of(2) }
 }

@@ -4,10 +4,7 @@ use super::part::Part;
 use super::pins::pins;
 use super::roots::Surroundings;
 use super::unused::unused_keys;
-use super::{
-    ObstacleMotion, Placing, Presence, Procedural, World, WorldBody, WorldContact, joined, jumps, sequence,
-    size,
-};
+use super::{ObstacleMotion, Placing, Presence, Procedural, World, WorldBody, joined, jumps, sequence, size};
 use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::error::SceneError;
@@ -19,7 +16,7 @@ use bowknot_errors::counted;
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_io::Import;
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction};
+use bowknot_twoway::{BodyContact, ContactData, ContactSide, HalfSpaceContact, PairFriction};
 use std::ops::Range;
 
 impl World {
@@ -54,7 +51,7 @@ struct Assembly {
     bodies: Vec<WorldBody>,
     models: Vec<Body>,
     filters: Vec<BodyFilter>,
-    contact: WorldContact,
+    contact: ContactData,
     base: Vec<Point>,
     positions: Vec<Point>,
     velocities: Vec<Vector>,

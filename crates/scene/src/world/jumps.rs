@@ -3,7 +3,8 @@
 use super::{ObstacleMotion, Presence, Sequence, World, WorldBody, bounds};
 use bowknot_geometry::Point;
 
-/// Way in a time step, in mean edge lengths of the deformable bodies, from which on an obstacle is said to jump.
+/// Way in a time step, in mean edge lengths of the deformable bodies, from which on an obstacle is said to
+/// jump.
 const JUMP: f64 = 10.0;
 
 /// Time steps that are looked at, at most.
@@ -32,8 +33,9 @@ pub(super) fn warnings(world: &World, dt: f64, steps: usize) -> Vec<String> {
         };
         (way > JUMP * edge).then(|| {
             format!(
-                "obstacle {} moves by up to {way:.3} m in a time step, {:.0} edge lengths, the farthest at {time:.3} s: \
-                 bodies that it meets on such a way are torn along or wait; use a smaller dt or a slower motion",
+                "obstacle {} moves by up to {way:.3} m in a time step, {:.0} edge lengths, the farthest at \
+                 {time:.3} s: bodies that it meets on such a way are torn along or wait; use a smaller dt or \
+                 a slower motion",
                 body.name,
                 way / edge
             )
@@ -64,7 +66,8 @@ fn of_sequence(sequence: &Sequence, presence: &Presence, dt: f64) -> Step {
     Step { way, time: start + frame as f64 / rate }
 }
 
-/// Of a rigid motion, while the obstacle is there: the corners of the box around a body move farther than what is in it.
+/// Of a rigid motion, while the obstacle is there: the corners of the box around a body move farther than
+/// what is in it.
 fn of_motion(body: &WorldBody, base: &[Point], dt: f64, steps: usize) -> Step {
     let (low, high) = bounds(base);
     let corner = |k: usize| Point::from([0, 1, 2].map(|c| if k >> c & 1 == 0 { low[c] } else { high[c] }));

@@ -37,7 +37,7 @@ use bowknot_dynamics::{Body, DynamicsModel};
 use bowknot_geometry::{BodyFilter, HalfSpace, Point, TETRAHEDRON_EDGES, Vector};
 use bowknot_io::Surface;
 use bowknot_proximity::CollisionModel;
-use bowknot_twoway::{BodyContact, HalfSpaceContact, PairFriction};
+use bowknot_twoway::ContactData;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -60,27 +60,17 @@ pub struct World {
     /// Topology, bodies, filters, half-spaces, with all obstacles there.
     pub collision: CollisionModel,
     /// Contact data of the bodies and half-spaces of the collision model.
-    pub contact: WorldContact,
+    pub contact: ContactData,
     /// The bodies for the dynamics, in the order of `bodies`.
     pub materials: Vec<Body>,
     /// Held or led vertices.
     pub pins: Vec<Pin>,
-    /// What was repaired or left out on the way, what speaks for a wrong unit, and keys without effect, in words.
+    /// What was repaired or left out on the way, what speaks for a wrong unit, and keys without effect, in
+    /// words.
     pub warnings: Vec<String>,
     /// Positions of obstacle vertices without their motion [m]; of the other vertices that collide, those at
     /// time 0.
     pub base: Vec<Point>,
-}
-
-/// What bodies bring into their contacts, for the two-way method.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WorldContact {
-    /// One entry per body.
-    pub bodies: Vec<BodyContact>,
-    /// One entry per half-space.
-    pub half_spaces: Vec<HalfSpaceContact>,
-    /// Friction of pairs.
-    pub pairs: Vec<PairFriction>,
 }
 
 /// A body of a [`World`].
@@ -96,7 +86,8 @@ pub struct WorldBody {
     pub interior: Range<u32>,
     /// Its tetrahedra, of positive volume at time 0, if it is a solid; eight of each quadratic one.
     pub tets: Vec<[u32; 4]>,
-    /// Its quadratic tetrahedra, if it is a solid of such: corners, then the middles of the edges 01, 02, 03, 12, 13, 23.
+    /// Its quadratic tetrahedra, if it is a solid of such: corners, then the middles of the edges 01, 02, 03,
+    /// 12, 13, 23.
     pub quadratic_tets: Vec<[u32; 10]>,
     /// Its edges, if it is made of strands.
     pub strands: Vec<[u32; 2]>,
@@ -113,7 +104,8 @@ pub struct WorldBody {
 }
 
 impl WorldBody {
-    /// The edges of its quadratic tetrahedra, by the vertices at their ends, with those in their middles; some more than once.
+    /// The edges of its quadratic tetrahedra, by the vertices at their ends, with those in their middles;
+    /// some more than once.
     fn middles(&self) -> impl Iterator<Item = ([u32; 2], u32)> + '_ {
         self.quadratic_tets.iter().flat_map(|tet| {
             TETRAHEDRON_EDGES.iter().zip(&tet[4..]).map(|([i, j], &v)| ([tet[*i], tet[*j]], v))
@@ -213,8 +205,8 @@ impl World {
         self.bodies.iter().map(|body| &body.name).chain(&self.half_space_names)
     }
 
-    /// Filters of the bodies, and half-spaces, of which those are absent that are not `present`: one entry per body, then
-    /// one per half-space.
+    /// Filters of the bodies, and half-spaces, of which those are absent that are not `present`: one entry
+    /// per body, then one per half-space.
     pub fn filters(&self, present: &[bool]) -> (Vec<BodyFilter>, Vec<HalfSpace>) {
         let (bodies, half_spaces) = present.split_at(self.bodies.len());
         let body = |(filter, present): (&BodyFilter, &bool)| if *present { *filter } else { filter.absent() };

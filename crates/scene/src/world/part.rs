@@ -171,8 +171,8 @@ impl Part {
         Ok(self)
     }
 
-    /// Leaves out lines of a cloth that are leftovers: those along edges of triangles, and those with an end at no triangle.
-    /// Refuses the others, unless they are to be dropped as well.
+    /// Leaves out lines of a cloth that are leftovers: those along edges of triangles, and those with an end
+    /// at no triangle. Refuses the others, unless they are to be dropped as well.
     fn leave_out_lines(
         &mut self,
         name: &str,
@@ -196,9 +196,9 @@ impl Part {
         if let (false, Some([p, q])) = (drop_lines, sewing.first()) {
             let [p, q] = [p, q].map(|v| self.numbers[*v as usize]);
             let message = format!(
-                "the mesh has {} between vertices of its triangles, the first joins vertices {p} and {q}: other programs sew along \
-                 such lines, which is not simulated; leave them out with drop_lines = true, or let `bowknot repair` weld \
-                 borders that lie together",
+                "the mesh has {} between vertices of its triangles, the first joins vertices {p} and {q}: \
+                 other programs sew along such lines, which is not simulated; leave them out with drop_lines \
+                 = true, or let `bowknot repair` weld borders that lie together",
                 counted(sewing.len(), "line", "lines")
             );
             return Err(SceneError::Body { body: format!("body {name}"), message });
@@ -224,8 +224,8 @@ impl Part {
         (own, counts)
     }
 
-    /// Gives all tetrahedra the same handedness: the order of their vertices is no geometry. Refuses flat ones, and pairs that
-    /// lie on the same side of the face that they share.
+    /// Gives all tetrahedra the same handedness: the order of their vertices is no geometry. Refuses flat
+    /// ones, and pairs that lie on the same side of the face that they share.
     fn order_tets(&mut self, name: &str, warnings: &mut Vec<String>) -> Result<(), String> {
         let TetFaults { flat, turned, overlapping } = check_tets(&self.positions, &self.tets);
         let mut overlapping: Vec<usize> = overlapping.iter().map(|shared| shared.tets[1]).collect();
@@ -248,7 +248,8 @@ impl Part {
         turned.iter().for_each(|&index| self.tets[index].swap(2, 3));
         if let Some(first) = turned.first() {
             warnings.push(format!(
-                "body {name}: {} of {} had their vertices in the opposite order and have been renumbered, the first is {first}",
+                "body {name}: {} of {} had their vertices in the opposite order and have been renumbered, \
+                 the first is {first}",
                 turned.len(),
                 of_all(self.tets.len())
             ));
@@ -256,8 +257,8 @@ impl Part {
         Ok(())
     }
 
-    /// Makes the tetrahedra quadratic where the body asks for that or, in a generated mesh without a choice, where linear ones would
-    /// be too stiff. The vertices of a mesh file are left as they are.
+    /// Makes the tetrahedra quadratic where the body asks for that or, in a generated mesh without a choice,
+    /// where linear ones would be too stiff. The vertices of a mesh file are left as they are.
     fn choose_elements(&mut self, spec: &BodySpec, warnings: &mut Vec<String>) {
         let few = match spec.elements {
             Some(SolidElements::Linear) => return,
@@ -269,13 +270,15 @@ impl Part {
             return self.make_quadratic();
         }
         warnings.push(format!(
-            "body {}: it is {across:.1} tetrahedra thick, and linear ones are several times too stiff in bending there; set \
-             elements = \"quadratic\", or mesh it finer (elements = \"linear\" accepts it)",
+            "body {}: it is {across:.1} tetrahedra thick, and linear ones are several times too stiff in \
+             bending there; set elements = \"quadratic\", or mesh it finer (elements = \"linear\" accepts \
+             it)",
             spec.name
         ));
     }
 
-    /// Divides each tetrahedron into eight by vertices in the middles of its edges; they follow those of the mesh.
+    /// Divides each tetrahedron into eight by vertices in the middles of its edges; they follow those of the
+    /// mesh.
     fn make_quadratic(&mut self) {
         self.quadratic_tets = add_edge_middles(&mut self.positions, &self.tets);
         self.tets = self.quadratic_tets.iter().flat_map(divide_tetrahedron).collect();

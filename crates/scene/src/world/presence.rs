@@ -20,8 +20,8 @@ impl Default for Presence {
 }
 
 impl Presence {
-    /// What is there in frames at `times` [s], ascending, of which `shown` says which are not empty. A frame counts until
-    /// the next; the first one also before, the last one also after.
+    /// What is there in frames at `times` [s], ascending, of which `shown` says which are not empty. A frame
+    /// counts until the next; the first one also before, the last one also after.
     pub(super) fn of_frames(shown: &[bool], time: impl Fn(usize) -> f64) -> Self {
         let mut spans: Vec<Range<f64>> = Vec::new();
         for (frame, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
@@ -42,8 +42,8 @@ impl Presence {
         Self { spans: self.spans.into_iter().map(cut).filter(|span| span.start < span.end).collect() }
     }
 
-    /// Whether the obstacle is there at `time`, a multiple of the time step `dt` [s], and so during the time step that
-    /// begins then.
+    /// Whether the obstacle is there at `time`, a multiple of the time step `dt` [s], and so during the time
+    /// step that begins then.
     pub fn holds(&self, time: f64, dt: f64) -> bool {
         let rounding = ROUNDING * dt;
         self.spans.iter().any(|span| span.start <= time + rounding && time + rounding < span.end)

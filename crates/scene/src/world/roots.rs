@@ -23,7 +23,8 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// Distance of a point from the nearest obstacle with a mesh [m]; infinite without any. No roots are in a half-space.
+    /// Distance of a point from the nearest obstacle with a mesh [m]; infinite without any. No roots are in a
+    /// half-space.
     fn distance(&self, x: &Point) -> f64 {
         let of_obstacles = self.triangles.iter().filter(|triangle| triangle[0] >= self.first_vertex);
         of_obstacles.fold(f64::INFINITY, |nearest, triangle| {
@@ -38,7 +39,8 @@ impl Surroundings<'_> {
     }
 }
 
-/// The vertices of strands within `count - 1` edges of their roots, and a warning if some roots seem to be tips.
+/// The vertices of strands within `count - 1` edges of their roots, and a warning if some roots seem to be
+/// tips.
 pub(super) fn roots(
     body: &WorldBody,
     count: usize,
@@ -67,8 +69,8 @@ pub(super) fn roots(
             let strands = counted(looked_at, "strand", "strands");
             let all = if looked_at == ends.len() { "" } else { " that were looked at" };
             format!(
-                "{tips} of {strands}{all} begin farther from all obstacles than they end: if they were written tip first, \
-                 root_end = \"nearest\" holds the nearer ends"
+                "{tips} of {strands}{all} begin farther from all obstacles than they end: if they were \
+                 written tip first, root_end = \"nearest\" holds the nearer ends"
             )
         })
     });
@@ -92,7 +94,8 @@ impl Strands {
         Self { first, neighbors }
     }
 
-    /// Both ends of each strand: the vertex that comes first in the mesh, and the farthest from it along the strand.
+    /// Both ends of each strand: the vertex that comes first in the mesh, and the farthest from it along the
+    /// strand.
     fn ends(&self) -> Vec<[u32; 2]> {
         let mut seen = vec![false; self.neighbors.len()];
         let mut ends = Vec::new();

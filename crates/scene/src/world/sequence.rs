@@ -11,7 +11,8 @@ use bowknot_io::FrameStack;
 use bowknot_io::{self as io, IoError, MESH_ENDINGS, Mesh, Place, files_in};
 use std::path::{Path, PathBuf};
 
-const ALL_EMPTY: &str = "all of its frames are empty, so there is nothing to show: a frame must have vertices at different places";
+const ALL_EMPTY: &str = "all of its frames are empty, so there is nothing to show: a frame must have \
+                         vertices at different places";
 
 /// Frames over one topology, as files hold them.
 struct Frames {
@@ -21,7 +22,8 @@ struct Frames {
     positions: Vec<Option<Vec<Point>>>,
 }
 
-/// Loads the sequence of an obstacle: the part that its first frame makes, all frames, placed, and when it is there.
+/// Loads the sequence of an obstacle: the part that its first frame makes, all frames, placed, and when it is
+/// there.
 pub(super) fn load(
     folder: &Path,
     path: &Path,
@@ -90,8 +92,8 @@ fn of_folder(folder: &Path, placing: &Placing) -> Result<Frames, IoError> {
     Ok(Frames { mesh, positions: frames })
 }
 
-/// Whether a frame shows nothing: all of its vertices are at one place, as frames of a run have it, and exports of what
-/// was scaled to nothing.
+/// Whether a frame shows nothing: all of its vertices are at one place, as frames of a run have it, and
+/// exports of what was scaled to nothing.
 fn is_empty(positions: &[Point]) -> bool {
     positions.len() > 1 && positions.iter().all(|p| *p == positions[0])
 }
@@ -125,8 +127,8 @@ fn difference(first: &Mesh, other: &Mesh, vertices: usize) -> Option<String> {
 /// Without support for archives every one is refused.
 #[cfg(not(feature = "npz"))]
 fn of_archive(path: &Path, _: &Placing) -> Result<Frames, IoError> {
-    let message = "archives cannot be read: this program was built without the feature `npz` of bowknot-scene; \
-                   give a folder of meshes";
+    let message = "archives cannot be read: this program was built without the feature `npz` of \
+                   bowknot-scene; give a folder of meshes";
     Err(IoError::content(path, Place::File, message))
 }
 

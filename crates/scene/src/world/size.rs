@@ -47,8 +47,8 @@ impl fmt::Display for BodySize {
 
 /// What speaks for a wrong unit, in words.
 pub(super) fn warnings(sizes: &[BodySize]) -> Vec<String> {
-    let remedy = "lengths are in m; `scale` of a body, or --scale of `run MESH`, converts a mesh: 0.01 for centimeters, \
-                  0.001 for millimeters";
+    let remedy = "lengths are in m; `scale` of a body, or --scale of `run MESH`, converts a mesh: 0.01 for \
+                  centimeters, 0.001 for millimeters";
     let mut warnings = Vec::new();
     for size in sizes.iter().filter(|size| size.vertices > 1) {
         if size.largest() > LARGE {
@@ -88,14 +88,16 @@ mod tests {
 
     fn sheet(size: f64) -> String {
         format!(
-            "[[body]]\nname = \"sheet\"\nshape = {{ type = \"sheet\", size = [{size}, {size}], edge = {} }}\n",
+            "[[body]]\nname = \"sheet\"\nshape = {{ type = \"sheet\", size = [{size}, {size}], edge = {} \
+             }}\n",
             size / 10.0
         )
     }
 
     fn ball(radius: f64) -> String {
         format!(
-            "[[obstacle]]\nname = \"ball\"\nshape = {{ type = \"ball\", radius = {radius}, edge = {} }}\ntranslate = [0.0, 0.0, {}]\n",
+            "[[obstacle]]\nname = \"ball\"\nshape = {{ type = \"ball\", radius = {radius}, edge = {} \
+             }}\ntranslate = [0.0, 0.0, {}]\n",
             radius / 2.0,
             -2.0 * radius
         )

@@ -12,9 +12,9 @@ const MOST: usize = 64;
 /// The faces of a tetrahedron, by the vertex that each leaves out.
 const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
 
-/// How many elements thick a slender solid is, if that is fewer than three: the median over the triangles of its surface of the
-/// way through it along their normals, over the size of the elements on the way. The size of a tetrahedron is the edge of the
-/// cube that six such fill.
+/// How many elements thick a slender solid is, if that is fewer than three: the median over the triangles of
+/// its surface of the way through it along their normals, over the size of the elements on the way. The size
+/// of a tetrahedron is the edge of the cube that six such fill.
 pub(super) fn few_elements_across(x: &[Point], tets: &[[u32; 4]]) -> Option<f64> {
     let faces = faces(tets);
     let lines = boundary_triangles(tets).into_iter().filter_map(|t| through(x, tets, &faces, t));
@@ -48,7 +48,8 @@ fn sorted(mut face: [u32; 3]) -> [u32; 3] {
     face
 }
 
-/// The way through a solid from the middle of a triangle of its surface, against the triangle's normal [m], and that in elements.
+/// The way through a solid from the middle of a triangle of its surface, against the triangle's normal [m],
+/// and that in elements.
 fn through(
     x: &[Point],
     tets: &[[u32; 4]],

@@ -1,15 +1,17 @@
 //! Pairs that are not near, but that vertices could reach in one step: candidates, and what a swept search
 //! finds. They are visited as they are found, and not stored.
 
-use super::near::{BLANK, round_up};
-use super::regions::{Regions, longest_path};
+use super::near::{BLANK, Listed, round_up};
+use super::regions::longest_path;
 use super::sides::{Sides, range_count, range_of};
 use crate::scene::CollisionScene;
-use crate::stages::AheadVisitor;
 use crate::state::ResolveState;
-use bowknot_geometry::{PairKind, Vector};
+use bowknot_geometry::{PairKind, Separation, Vector};
 use bowknot_proximity::{Candidate, CandidateList, Pair, near_half_spaces, separate_all};
 use rayon::prelude::*;
+
+/// Is called with kind, vertices, contact geometry and minimum separation [m] of a pair, by several threads.
+pub type AheadVisitor<'a> = dyn Fn(PairKind, &[u32; 4], &Separation, f64) + Sync + 'a;
 
 /// Share of the damping at which pairs count as ahead. A pair is left out if the vertices use up less of its
 /// distance: then its slab, which is at least 0.9 times as wide, does not limit them either.
@@ -44,29 +46,26 @@ pub(super) struct AheadPairs {
 
 impl AheadPairs {
     /// Calls `visit` with all candidate pairs that are not pairs of `state.contacts` and that could limit a
-    /// step along `displacements` [m], with their contact geometry at x. `rounding`: by how much distances may
-    /// be below their bounds [m].
+    /// step along `displacements` [m], with their contact geometry at x.
     pub fn visit(
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
-        candidates: &CandidateList,
-        regions: &Regions,
-        rounding: f64,
+        listed: Listed<'_>,
         displacements: &[Vector],
         visit: &AheadVisitor<'_>,
     ) {
         let share = SHARE * scene.params().solver.forward.damping.min(1.0);
-        self.set_motions(scene, state, regions, rounding, displacements, share);
+        self.set_motions(scene, state, listed, displacements, share);
         let (motions, topology) = (&self.motions, scene.model().topology());
-        self.sides.fill(topology, candidates, |vertices| {
+        self.sides.fill(topology, listed.candidates, |vertices| {
             let largest = vertices.iter().map(|&v| motions[v as usize]).fold(Motion::default(), Motion::max);
             largest.offset + largest.travel
         });
         // Rounded down.
         let bound_share = share as f32 * (1.0 - f32::EPSILON);
         let sides = &self.sides;
-        visit_candidates(scene, state, candidates, visit, |kind, a, candidate| {
+        visit_candidates(scene, state, listed.candidates, visit, |kind, a, candidate| {
             let [own, other] = sides.of(kind);
             candidate.bound * bound_share <= (own[a] + other[candidate.element as usize]) * LARGER
         });
@@ -75,8 +74,9 @@ impl AheadPairs {
         visit_half_spaces(scene, state, &self.half_space_pairs, visit);
     }
 
-    /// Calls `visit` with all pairs of a swept search that are not pairs of `state.contacts`: `candidates` and
-    /// the pairs of half-spaces that come within twice the `radius` of a vertex along `displacements` [m].
+    /// Calls `visit` with all pairs of a swept search that are not pairs of `state.contacts`: `candidates`
+    /// and the pairs of half-spaces that come within twice the `radius` of a vertex along `displacements`
+    /// [m].
     pub fn visit_swept(
         &mut self,
         scene: &CollisionScene,
@@ -95,8 +95,7 @@ impl AheadPairs {
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
-        regions: &Regions,
-        rounding: f64,
+        Listed { regions, rounding, .. }: Listed<'_>,
         displacements: &[Vector],
         share: f64,
     ) {

@@ -1,15 +1,15 @@
 //! Free flight: steps in which no body comes near another or a half-space.
 //!
-//! **Between bodies** the boxes of the bodies decide, of x and of x + d, inflated by their search margins. Two
-//! bodies are apart if their boxes are, along one axis at both ends of the step: the gap along that axis is
-//! linear in the path time if all vertices go all the way, so it is as large in between. No pair of vertices
-//! of different bodies is then within contact range during the step, and none needs to be looked at.
+//! **Between bodies** the boxes of the bodies decide, of x and of x + d, inflated by their search margins.
+//! Two bodies are apart if their boxes are, along one axis at both ends of the step: the gap along that axis
+//! is linear in the path time if all vertices go all the way, so it is as large in between. No pair of
+//! vertices of different bodies is then within contact range during the step, and none needs to be looked at.
 //!
-//! **Within a body** distances do not change if all of its vertices are translated alike. So the trust regions
-//! move along with the body, by the displacement of the center of its box, and only what a vertex moves beyond
-//! that must stay in its ball. The list of candidates holds as it is: for pairs within bodies. The others have
-//! wrong bounds ([`Flight::drift`]) until everything is searched again, which is due before the first step
-//! that is no free flight.
+//! **Within a body** distances do not change if all of its vertices are translated alike. So the trust
+//! regions move along with the body, by the displacement of the center of its box, and only what a vertex
+//! moves beyond that must stay in its ball. The list of candidates holds as it is: for pairs within bodies.
+//! The others have wrong bounds ([`Flight::drift`]) until everything is searched again, which is due before
+//! the first step that is no free flight.
 //!
 //! Whether a step is a free flight depends on x and d alone, not on the list or on earlier steps.
 
@@ -116,8 +116,8 @@ impl Flight {
         vertices.with_min_len(CHUNK).map(keeps_up).reduce(|| true, |a, b| a & b)
     }
 
-    /// Moves the trust regions along with their bodies, as [planned](Self::plan). `largest_coordinate` is that
-    /// of the step [m].
+    /// Moves the trust regions along with their bodies, as [planned](Self::plan). `largest_coordinate` is
+    /// that of the step [m].
     pub fn take(
         &mut self,
         scene: &CollisionScene,
@@ -141,8 +141,8 @@ impl Flight {
         };
         let vertices = vertices.into_par_iter().with_min_len(CHUNK);
         self.drift |= vertices.map(follow).reduce(|| false, |a, b| a | b);
-        // Each center is rounded by at most half a unit in the last place per component, 0.87 units in length,
-        // and a distance has two sides.
+        // Each center is rounded by at most half a unit in the last place per component, 0.87 units in
+        // length, and a distance has two sides.
         self.rounding += 2.0 * f64::EPSILON * largest_coordinate;
     }
 

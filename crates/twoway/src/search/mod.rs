@@ -10,17 +10,18 @@ mod sides;
 pub(crate) use regions::longest_path;
 
 use crate::scene::CollisionScene;
-use crate::stages::{AheadVisitor, Coverage, Search};
+use crate::stages::{Coverage, Search};
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use ahead::AheadPairs;
+pub use ahead::AheadVisitor;
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_proximity::{CandidateList, PairList, ProximitySearch};
 use bowknot_stepper::{Bound, TrustRegionRule};
 use flight::Flight;
-use near::NearPairs;
 pub use near::{GUARDED, GUARDED_FLOOR, KNOWN};
+use near::{Listed, NearPairs};
 use regions::Regions;
 use std::time::Instant;
 
@@ -135,8 +136,146 @@ impl TrustRegionSearch {
     fn select(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let timer = Instant::now();
         let Self { near, candidates, regions, flight, complete, .. } = self;
-        near.select(scene, state, candidates, regions, flight.rounding, *complete, statistics);
+        let listed = Listed { candidates, regions, rounding: flight.rounding };
+        near.select(scene, state, listed, *complete, statistics);
         statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
+    }
+}
+
+/// What [`CertifiedForward`](crate::CertifiedForward) and [`Resolver::adopt`](crate::Resolver::adopt) ask
+/// for.
+impl TrustRegionSearch {
+    /// As [`Self::update`], for a caller who knows the pairs: all that are within contact range at `state.x`
+    /// are among `near`. It need not search then.
+    pub fn update_among(
+        &mut self,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
+        near: &PairList,
+        statistics: &mut Statistics,
+    ) {
+        if self.complete {
+            return self.update(scene, state, statistics);
+        }
+        // Candidates and trust regions stay as they are: the next update renews those that vertices have
+        // left.
+        let timer = Instant::now();
+        self.near.select_among(scene, state, near, statistics);
+        statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
+    }
+
+    /// Makes trust regions hold the moves along `displacements` [m] from `state.x`, each at most
+    /// `solver.forward.trust_region_max` long, and the candidate pairs valid for them.
+    pub fn cover(
+        &mut self,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
+        displacements: &[Vector],
+        statistics: &mut Statistics,
+    ) {
+        if self.rule == TrustRegionRule::PerVertex {
+            let timer = Instant::now();
+            // This step is no free flight.
+            self.requested |= self.flight.drift;
+            let searched = self.cover_paths(scene, state, |v| displacements[v], statistics);
+            statistics.seconds.search += timer.elapsed().as_secs_f64();
+            if searched && self.complete {
+                self.select(scene, state, statistics);
+            }
+        }
+    }
+
+    /// Calls `visit` with every pair that is not in `state.contacts` and could limit such moves. There is
+    /// none if `state.contacts` is complete.
+    pub fn visit_ahead(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        displacements: &[Vector],
+        visit: &AheadVisitor<'_>,
+    ) {
+        if !self.complete {
+            let Self { ahead, candidates, regions, flight, .. } = self;
+            let listed = Listed { candidates, regions, rounding: flight.rounding };
+            ahead.visit(scene, state, listed, displacements, visit);
+        }
+    }
+
+    /// Calls `visit` with the pairs within bodies that are not in `state.contacts` and could limit a step in
+    /// free flight along `displacements` [m] from x: one in which no body comes near another or a half-space,
+    /// and the vertices of each body move almost alike. Returns whether the step is one. It must be a
+    /// function of x and the displacements.
+    pub fn visit_flight(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        displacements: &[Vector],
+        visit: &AheadVisitor<'_>,
+        statistics: &mut Statistics,
+    ) -> bool {
+        if self.complete || self.rule != TrustRegionRule::PerVertex {
+            return false;
+        }
+        if !self.flight.plan(scene, state, displacements) {
+            return false;
+        }
+        let timer = Instant::now();
+        let relative = std::mem::take(&mut self.flight.relative);
+        let smallest = self.regions.smallest_radius(scene);
+        self.requested |= self.flight.is_spent(smallest);
+        self.cover_paths(scene, state, |v| relative[v], statistics);
+        statistics.seconds.search += timer.elapsed().as_secs_f64();
+        let Self { ahead, candidates, regions, flight, .. } = self;
+        let bodies = scene.model().vertex_body();
+        if !candidates.is_empty() {
+            // Pairs of different bodies may be listed with wrong bounds; they do not matter.
+            let listed = Listed { candidates, regions, rounding: flight.rounding };
+            ahead.visit(scene, state, listed, &relative, &|kind, vertices, at, least| {
+                let body = |side: usize| bodies[vertices[side] as usize];
+                if kind != PairKind::VertexHalfSpace && body(0) == body(kind.side_a()) {
+                    visit(kind, vertices, at, least);
+                }
+            });
+        }
+        flight.relative = relative;
+        true
+    }
+
+    /// Notes that all vertices will take this step from x, all the way. `largest_coordinate` is that of the
+    /// step [m].
+    pub fn take_flight(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        displacements: &[Vector],
+        largest_coordinate: f64,
+    ) {
+        self.flight.take(scene, state, displacements, largest_coordinate, &mut self.regions);
+        self.search.note_moved();
+    }
+
+    /// Calls `visit` with every pair that is not in `state.contacts` and could meet while the vertices move
+    /// from x along `displacements`, all at the same path time, and deviate from there by at most
+    /// `deviations` [m].
+    pub fn visit_swept(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        displacements: &[Vector],
+        deviations: &[f64],
+        visit: &AheadVisitor<'_>,
+        statistics: &mut Statistics,
+    ) {
+        let timer = Instant::now();
+        self.set_swept_radii(scene, deviations);
+        let Self { search, ahead, swept, swept_radii, .. } = self;
+        search.list_swept(scene.model(), &state.x, displacements, swept_radii, swept);
+        statistics.seconds.search += timer.elapsed().as_secs_f64();
+        let radius = |v: usize| swept_radii[v];
+        ahead.visit_swept(scene, state, swept, displacements, radius, visit);
+        self.left = true;
+        self.requested |= self.flight.drift;
+        statistics.searches += 1;
     }
 }
 
@@ -170,129 +309,6 @@ impl Search for TrustRegionSearch {
         self.select(scene, state, statistics);
     }
 
-    fn update_among(
-        &mut self,
-        scene: &CollisionScene,
-        state: &mut ResolveState,
-        near: &PairList,
-        statistics: &mut Statistics,
-    ) {
-        if self.complete {
-            return self.update(scene, state, statistics);
-        }
-        // Candidates and trust regions stay as they are: the next update renews those that vertices have left.
-        let timer = Instant::now();
-        self.near.select_among(scene, state, near, statistics);
-        statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
-    }
-
-    fn cover(
-        &mut self,
-        scene: &CollisionScene,
-        state: &mut ResolveState,
-        displacements: &[Vector],
-        statistics: &mut Statistics,
-    ) {
-        if self.rule == TrustRegionRule::PerVertex {
-            let timer = Instant::now();
-            // This step is no free flight.
-            self.requested |= self.flight.drift;
-            let searched = self.cover_paths(scene, state, |v| displacements[v], statistics);
-            statistics.seconds.search += timer.elapsed().as_secs_f64();
-            if searched && self.complete {
-                self.select(scene, state, statistics);
-            }
-        }
-    }
-
-    fn visit_ahead(
-        &mut self,
-        scene: &CollisionScene,
-        state: &ResolveState,
-        displacements: &[Vector],
-        visit: &AheadVisitor<'_>,
-    ) {
-        if !self.complete {
-            let Self { ahead, candidates, regions, flight, .. } = self;
-            ahead.visit(scene, state, candidates, regions, flight.rounding, displacements, visit);
-        }
-    }
-
-    fn visit_flight(
-        &mut self,
-        scene: &CollisionScene,
-        state: &ResolveState,
-        displacements: &[Vector],
-        visit: &AheadVisitor<'_>,
-        statistics: &mut Statistics,
-    ) -> bool {
-        if self.complete || self.rule != TrustRegionRule::PerVertex {
-            return false;
-        }
-        if !self.flight.plan(scene, state, displacements) {
-            return false;
-        }
-        let timer = Instant::now();
-        let relative = std::mem::take(&mut self.flight.relative);
-        let smallest = self.regions.smallest_radius(scene);
-        self.requested |= self.flight.is_spent(smallest);
-        self.cover_paths(scene, state, |v| relative[v], statistics);
-        statistics.seconds.search += timer.elapsed().as_secs_f64();
-        let Self { ahead, candidates, regions, flight, .. } = self;
-        let bodies = scene.model().vertex_body();
-        if !candidates.is_empty() {
-            // Pairs of different bodies may be listed with wrong bounds; they do not matter.
-            ahead.visit(
-                scene,
-                state,
-                candidates,
-                regions,
-                flight.rounding,
-                &relative,
-                &|kind, vertices, at, least| {
-                    let body = |side: usize| bodies[vertices[side] as usize];
-                    if kind != PairKind::VertexHalfSpace && body(0) == body(kind.side_a()) {
-                        visit(kind, vertices, at, least);
-                    }
-                },
-            );
-        }
-        flight.relative = relative;
-        true
-    }
-
-    fn take_flight(
-        &mut self,
-        scene: &CollisionScene,
-        state: &ResolveState,
-        displacements: &[Vector],
-        largest_coordinate: f64,
-    ) {
-        self.flight.take(scene, state, displacements, largest_coordinate, &mut self.regions);
-        self.search.note_moved();
-    }
-
-    fn visit_swept(
-        &mut self,
-        scene: &CollisionScene,
-        state: &ResolveState,
-        displacements: &[Vector],
-        deviations: &[f64],
-        visit: &AheadVisitor<'_>,
-        statistics: &mut Statistics,
-    ) {
-        let timer = Instant::now();
-        self.set_swept_radii(scene, deviations);
-        let Self { search, ahead, swept, swept_radii, .. } = self;
-        search.list_swept(scene.model(), &state.x, displacements, swept_radii, swept);
-        statistics.seconds.search += timer.elapsed().as_secs_f64();
-        let radius = |v: usize| swept_radii[v];
-        ahead.visit_swept(scene, state, swept, displacements, radius, visit);
-        self.left = true;
-        self.requested |= self.flight.drift;
-        statistics.searches += 1;
-    }
-
     fn finish(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         if state.step == 0 {
             self.search_after_flight(scene, state);
@@ -304,6 +320,7 @@ impl Search for TrustRegionSearch {
             statistics.seconds.search += timer.elapsed().as_secs_f64();
         }
         self.select(scene, state, statistics);
+        statistics.pairs = self.candidates.len();
     }
 
     fn request(&mut self) {
@@ -315,9 +332,5 @@ impl Search for TrustRegionSearch {
             TrustRegionRule::PerVertex => Coverage::TrustRegions(&self.regions.balls),
             TrustRegionRule::Uniform => Coverage::Distance(self.covered_distance),
         }
-    }
-
-    fn candidate_count(&self) -> usize {
-        self.candidates.len()
     }
 }

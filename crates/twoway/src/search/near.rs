@@ -12,10 +12,19 @@ use crate::scene::CollisionScene;
 use crate::spacing::MIN_SEPARATION_MARGIN;
 use crate::state::{ContactSet, ResolveState};
 use crate::statistics::Statistics;
-use bowknot_constraints::{DesiredDistance, FrictionModel};
+use bowknot_constraints::{DeltaRule, FrictionModel};
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CandidateList, Pair, PairList, near_half_spaces, separate_all};
 use rayon::prelude::*;
+
+/// Candidate pairs, and what holds for those that are not listed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Listed<'a> {
+    pub candidates: &'a CandidateList,
+    pub regions: &'a Regions,
+    /// By how much distances may be below their bounds [m].
+    pub rounding: f64,
+}
 
 /// Pairs whose data one task carries over, and vertices that one task looks at.
 const CHUNK: usize = 1024;
@@ -72,20 +81,17 @@ impl NearPairs {
     }
 
     /// Makes the candidates that are within contact range at x the pairs of `state.contacts`: what the other
-    /// stages see does not depend on which pairs are listed. `rounding`: by how much distances may be below
-    /// their bounds [m]. `complete`: all candidates.
+    /// stages see does not depend on which pairs are `listed`. `complete`: all candidates.
     pub fn select(
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        candidates: &CandidateList,
-        regions: &Regions,
-        rounding: f64,
+        listed: Listed<'_>,
         complete: bool,
         statistics: &mut Statistics,
     ) {
-        let model = scene.model();
-        self.set_reach(scene, state, regions, rounding, candidates);
+        let (model, Listed { candidates, regions, .. }) = (scene.model(), listed);
+        self.set_reach(scene, state, listed);
         self.keep(&mut state.contacts);
         let x = state.x.as_slice();
         let selection = Selection { scene, x, moved: &self.moved, old: &self.old, complete };
@@ -153,9 +159,7 @@ impl NearPairs {
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
-        regions: &Regions,
-        rounding: f64,
-        candidates: &CandidateList,
+        Listed { candidates, regions, rounding }: Listed<'_>,
     ) {
         let (model, count) = (scene.model(), state.x.len());
         self.reach.resize(count, 0.0);
@@ -223,14 +227,14 @@ fn inherit(
     let carried =
         |kind: PairKind, pair: &Pair| starts.then(|| state.call.carried(kind, pair.elements)).flatten();
     let count = contacts.pairs.len();
-    contacts.desired.resize(count, 0.0);
+    contacts.deltas.resize(count, 0.0);
     contacts.min_separations.resize(count, 0.0);
     contacts.multipliers.resize(count, 0.0);
     for kind in PairKind::ALL {
         let range = contacts.pairs.range(kind);
         let pairs = &contacts.pairs.pairs()[range.clone()];
         let places = (
-            &mut contacts.desired[range.clone()],
+            &mut contacts.deltas[range.clone()],
             &mut contacts.min_separations[range.clone()],
             &mut contacts.multipliers[range.clone()],
             &matches[range.clone()],
@@ -238,15 +242,15 @@ fn inherit(
             &contacts.separations[range],
         );
         let places = places.into_par_iter().with_min_len(CHUNK);
-        let lowered = places.map(|(desired, min_separation, multiplier, &matched, pair, separation)| {
-            if let Some(&old_desired) = old.desired.get(matched as usize) {
-                *desired = old_desired;
+        let lowered = places.map(|(delta, min_separation, multiplier, &matched, pair, separation)| {
+            if let Some(&old_delta) = old.deltas.get(matched as usize) {
+                *delta = old_delta;
                 *min_separation = old.min_separations[matched as usize];
                 *multiplier = old.multipliers[matched as usize];
                 return 0;
             }
             let first = first_values(scene, kind, pair, separation, growth, &state.call);
-            (*desired, *min_separation) = (first.desired, first.min_separation);
+            (*delta, *min_separation) = (first.delta, first.min_separation);
             *multiplier = carried(kind, pair).map_or(0.0, |carried| carried.normal);
             usize::from(first.lowered)
         });
@@ -378,25 +382,26 @@ impl Lists<'_> {
     }
 }
 
-/// Distance in the desired one below which the target knows a contact.
+/// Distance in the contact distance below which the target knows a contact.
 pub const KNOWN: f64 = 1.3;
 
 /// Share of its gap that the row of a contact guards which the target knows.
 pub const GUARDED: f64 = 0.7;
 
-/// Smallest distance that such a row asks for, in the way from the minimum separation to the desired distance. At the minimum separation
-/// the forward step closes no pair further, and a pair that is held there is stuck.
+/// Smallest distance that such a row asks for, in the way from the minimum separation to the contact
+/// distance. At the minimum separation the forward step closes no pair further, and a pair that is held there
+/// is stuck.
 pub const GUARDED_FLOOR: f64 = 0.35;
 
 /// Data of a pair that is new in this call.
 #[derive(Clone, Copy, Debug, Default)]
 struct FirstValues {
-    desired: f64,
+    delta: f64,
     min_separation: f64,
     lowered: bool,
 }
 
-/// Desired distance and minimum separation of a pair that is new in this call. `growth`: by how much its gap
+/// Contact distance and minimum separation of a pair that is new in this call. `growth`: by how much its gap
 /// may grow in the call [m].
 fn first_values(
     scene: &CollisionScene,
@@ -408,10 +413,10 @@ fn first_values(
 ) -> FirstValues {
     let (model, rest) = (scene.model(), scene.rest());
     let spacing = scene.spacing().of(model, kind, pair);
-    let rule = DesiredDistance { delta: spacing.delta, growth };
-    let (desired, lowered) = rule.of(model, kind, pair, rest, separation.distance);
+    let rule = DeltaRule { delta: spacing.delta, growth };
+    let (delta, lowered) = rule.of(model, kind, pair, rest, separation.distance);
     let min_separation = match spacing.min_separation {
-        None => scene.lengths().min_separation.min(0.1 * desired),
+        None => scene.lengths().min_separation.min(0.1 * delta),
         Some(guaranteed) => {
             // The rest distance of neighbors bounds their minimum separation. A pair that starts closer has
             // its own gap as minimum separation, which grows from call to call.
@@ -423,10 +428,10 @@ fn first_values(
     let (unlimited, _) = rule.without_growth_limit(model, kind, pair, rest);
     if is_known && separation.distance < KNOWN * unlimited {
         let least = min_separation + GUARDED_FLOOR * (unlimited - min_separation);
-        let desired = (GUARDED * separation.distance).max(least).min(desired);
-        return FirstValues { desired, min_separation, lowered };
+        let delta = (GUARDED * separation.distance).max(least).min(delta);
+        return FirstValues { delta, min_separation, lowered };
     }
-    FirstValues { desired, min_separation, lowered }
+    FirstValues { delta, min_separation, lowered }
 }
 
 /// Fills lists of separations before they are written.

@@ -6,8 +6,8 @@ use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
 use bowknot_twoway::lcp::{LcpError, LcpState};
 use bowknot_twoway::{
-    CertifiedForward, CollisionScene, ColoredSweeps, LcpBackward, Params, Resolver, RowSolver, RowSystem,
-    TrustRegionSearch,
+    CertifiedForward, CollisionScene, ColoredSweeps, ContactData, LcpBackward, Params, Resolver, RowSolver,
+    RowSystem, TrustRegionSearch,
 };
 
 /// The default solver over all edges.
@@ -24,8 +24,8 @@ impl RowSolver for AllEdges {
     }
 }
 
-/// What one call leaves: y^(l), the largest ratio of an edge at y to 1.1 times its rest length, and the rows with
-/// a multiplier.
+/// What one call leaves: y^(l), the largest ratio of an edge at y to 1.1 times its rest length, and the rows
+/// with a multiplier.
 struct Outcome {
     y: Vec<Point>,
     stretch: f64,
@@ -38,7 +38,9 @@ fn call<K: RowSolver + Default>(
     target: &[Point],
     params: &Params,
 ) -> Outcome {
-    let scene = CollisionScene::new(model.clone(), x, &vec![1.0; x.len()], params.clone()).unwrap();
+    let scene =
+        CollisionScene::new(model.clone(), x, &vec![1.0; x.len()], ContactData::default(), params.clone())
+            .unwrap();
     let search = TrustRegionSearch::new(&scene);
     let backward = LcpBackward::with_solver(K::default());
     let mut resolver = Resolver::with_stages(scene, search, backward, CertifiedForward::default());
@@ -65,8 +67,8 @@ fn distance(a: &[Point], b: &[Point]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
-/// A chain along x of which only the last vertex wants to move: at the target one edge is too long, and pulls the
-/// others after it one by one.
+/// A chain along x of which only the last vertex wants to move: at the target one edge is too long, and pulls
+/// the others after it one by one.
 fn chain() -> (CollisionModel, Vec<Point>, Vec<Point>) {
     let x: Vec<Point> = (0..40).map(|i| Point::new(0.1 * f64::from(i), 0.0, 0.0)).collect();
     let topology = Topology::builder(40).strand_edges((0..39).map(|i| [i, i + 1])).build().unwrap();

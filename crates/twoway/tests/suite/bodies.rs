@@ -6,10 +6,14 @@ use crate::common::{Draw, Flight, brute_force, sheet};
 use bowknot_geometry::{HalfSpace, PairKind, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
 use bowknot_twoway::{
-    AcceptedState, BodyContact, HalfSpaceContact, Lag, MIN_SEPARATION_MARGIN, Params, PrescribedEntity,
-    ResolveError, ResolveInput, Resolver,
+    AcceptedState, BodyContact, ContactData, HalfSpaceContact, Lag, MIN_SEPARATION_MARGIN, Params,
+    PrescribedEntity, ResolveError, ResolveInput, Resolver,
 };
 use std::ops::ControlFlow;
+
+fn of_bodies(bodies: Vec<BodyContact>) -> ContactData {
+    ContactData { bodies, ..ContactData::default() }
+}
 
 fn thick(thickness: f64) -> BodyContact {
     BodyContact { thickness: Some(thickness), ..BodyContact::default() }
@@ -77,11 +81,12 @@ fn zoo() -> Zoo {
 
 impl Zoo {
     fn resolver(&self, params: Params) -> Resolver {
-        Resolver::new(self.model.clone(), &self.x, &vec![1.0; self.x.len()], params)
-            .unwrap()
-            .with_bodies(self.contact.clone())
-            .unwrap()
-            .with_half_spaces(vec![self.ground])
+        let contact = ContactData {
+            bodies: self.contact.clone(),
+            half_spaces: vec![self.ground],
+            ..ContactData::default()
+        };
+        Resolver::with_contact(self.model.clone(), &self.x, &vec![1.0; self.x.len()], contact, params)
             .unwrap()
     }
 
@@ -145,7 +150,7 @@ fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
             resolver.resolve_with(&mut x, &y, &input, &mut observer).unwrap();
             for kind in PairKind::ALL {
                 let contacts = &resolver.state().contacts;
-                let near = |p: usize| contacts.separations[p].distance < 1.3 * contacts.desired[p];
+                let near = |p: usize| contacts.separations[p].distance < 1.3 * contacts.deltas[p];
                 met[kind as usize] |= contacts.pairs.range(kind).any(near);
             }
         }
@@ -161,10 +166,14 @@ fn a_swept_step_without_candidates_keeps_minimum_separations() {
     let mut x = vec![Point::new(-0.2, 0.0, 0.0), Point::new(0.2, side_by_side, 0.0)];
     let y = [Point::new(0.0, 0.0, 0.0), Point::new(0.0, side_by_side, 0.0)];
     let topology = Topology::builder(2).particles([0, 1]).build().unwrap();
-    let mut resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 2], Params::fast())
-        .unwrap()
-        .with_bodies(vec![BodyContact { delta: Some(0.04), ..thick(0.03) }])
-        .unwrap();
+    let mut resolver = Resolver::with_contact(
+        CollisionModel::single_body(topology),
+        &x,
+        &[1.0; 2],
+        of_bodies(vec![BodyContact { delta: Some(0.04), ..thick(0.03) }]),
+        Params::fast(),
+    )
+    .unwrap();
     let mut observer = |state: &AcceptedState<'_>| {
         let distance = (state.positions[0] - state.positions[1]).norm();
         assert!(distance >= 0.03 * (1.0 - 1e-9), "{distance} m in step {}", state.step);
@@ -173,7 +182,7 @@ fn a_swept_step_without_candidates_keeps_minimum_separations() {
     let report = resolver.resolve_with(&mut x, &y, &ResolveInput::default(), &mut observer).unwrap();
     assert!(report.converged, "{report:?}");
     let distance = (x[0] - x[1]).norm();
-    assert!(distance > 0.04 && distance < 0.055, "desired: 0.045 m; found: {distance} m");
+    assert!(distance > 0.04 && distance < 0.055, "wanted: 0.045 m; found: {distance} m");
 }
 
 #[test]
@@ -188,10 +197,14 @@ fn a_gap_that_starts_below_the_thickness_grows_to_it_and_never_shrinks() {
     let model =
         CollisionModel::new(topology.clone(), bodies.clone(), vec![BodyFilter::DEFORMABLE; 2], vec![])
             .unwrap();
-    let resolver = Resolver::new(model, &x, &vec![0.1; 2 * n], Params::fast())
-        .unwrap()
-        .with_bodies(vec![thick(thickness); 2])
-        .unwrap();
+    let resolver = Resolver::with_contact(
+        model,
+        &x,
+        &vec![0.1; 2 * n],
+        of_bodies(vec![thick(thickness); 2]),
+        Params::fast(),
+    )
+    .unwrap();
     let speed = resolver.scene().lengths().separation_speed;
     let v = vec![Vector::zeros(); 2 * n];
     let mut flight = Flight { resolver, x, v, gravity: Vector::zeros(), dt: 0.01 };
@@ -240,10 +253,14 @@ fn grains_of_two_sizes_come_to_rest_at_the_sum_of_their_radii_and_on_the_ground_
     let filters = vec![BodyFilter::DEFORMABLE; 2];
     let model = CollisionModel::new(topology, bodies, filters, vec![ground]).unwrap();
     let grain = |delta| BodyContact { delta: Some(delta), ..BodyContact::default() };
-    let resolver = Resolver::new(model, &x, &[0.1, 0.8, 0.1, 0.8], Params::fast())
-        .unwrap()
-        .with_bodies(vec![grain(0.02), grain(0.05)])
-        .unwrap();
+    let resolver = Resolver::with_contact(
+        model,
+        &x,
+        &[0.1, 0.8, 0.1, 0.8],
+        of_bodies(vec![grain(0.02), grain(0.05)]),
+        Params::fast(),
+    )
+    .unwrap();
     let lengths = resolver.scene().lengths();
     assert!((lengths.edge - 2.5 * 0.035).abs() < 1e-12, "lengths follow the grains: {lengths:?}");
     let v = vec![Vector::zeros(); 4];
@@ -277,10 +294,14 @@ fn strands_rest_on_strands_and_particles_on_both() {
         Topology::builder(11).strand_edges(strands.iter().copied()).particles([10]).build().unwrap();
     let bodies: Vec<u32> = (0..11).map(|i| i / 5).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 3], vec![]).unwrap();
-    let resolver = Resolver::new(model, &x, &[1.0; 11], Params::fast())
-        .unwrap()
-        .with_bodies(vec![thick(0.01), thick(0.01), BodyContact { delta: Some(0.02), ..thick(0.01) }])
-        .unwrap();
+    let resolver = Resolver::with_contact(
+        model,
+        &x,
+        &[1.0; 11],
+        of_bodies(vec![thick(0.01), thick(0.01), BodyContact { delta: Some(0.02), ..thick(0.01) }]),
+        Params::fast(),
+    )
+    .unwrap();
     let v = vec![Vector::zeros(); 11];
     let mut flight = Flight { resolver, x, v, gravity: -2.0 * Vector::z(), dt: 0.01 };
     for _ in 0..100 {
@@ -310,10 +331,14 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
     let filters = vec![BodyFilter::DEFORMABLE; 3];
     let model = CollisionModel::new(topology, bodies.clone(), filters, vec![]).unwrap();
     let limit = |stretch_limit| BodyContact { stretch_limit, ..BodyContact::default() };
-    let mut resolver = Resolver::new(model, &x, &vec![1.0; 3 * n], Params::fast())
-        .unwrap()
-        .with_bodies(vec![limit(Some(f64::INFINITY)), limit(Some(1.3)), limit(None)])
-        .unwrap();
+    let mut resolver = Resolver::with_contact(
+        model,
+        &x,
+        &vec![1.0; 3 * n],
+        of_bodies(vec![limit(Some(f64::INFINITY)), limit(Some(1.3)), limit(None)]),
+        Params::fast(),
+    )
+    .unwrap();
     let y: Vec<Point> = x.iter().map(|p| Point::new(1.5 * p.x, p.y, p.z)).collect();
     let mut moved = x.clone();
     let report = resolver.resolve(&mut moved, &y).unwrap();
@@ -334,11 +359,14 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
         .triangles(resolver.scene().model().topology().triangles[..18].iter().copied())
         .build()
         .unwrap();
-    let mut resolver =
-        Resolver::new(CollisionModel::single_body(topology.clone()), &x[..n], &vec![1.0; n], Params::fast())
-            .unwrap()
-            .with_bodies(vec![limit(Some(f64::INFINITY))])
-            .unwrap();
+    let mut resolver = Resolver::with_contact(
+        CollisionModel::single_body(topology.clone()),
+        &x[..n],
+        &vec![1.0; n],
+        of_bodies(vec![limit(Some(f64::INFINITY))]),
+        Params::fast(),
+    )
+    .unwrap();
     let mut moved = x[..n].to_vec();
     let report = resolver.resolve(&mut moved, &y[..n]).unwrap();
     assert!(report.converged && report.edge_rows == 0 && report.max_stretch > 1.0, "{report:?}");
@@ -415,15 +443,17 @@ fn layers_within_a_group_do_not_hold_each_other_back() {
 #[test]
 fn invalid_contact_data_and_input_are_refused() {
     let zoo = zoo();
-    let resolver =
-        || Resolver::new(zoo.model.clone(), &zoo.x, &vec![1.0; zoo.x.len()], Params::fast()).unwrap();
-    let error = resolver().with_bodies(vec![BodyContact { friction: -0.5, ..thick(-1.0) }; 5]).unwrap_err();
+    let resolver = |contact| {
+        Resolver::with_contact(zoo.model.clone(), &zoo.x, &vec![1.0; zoo.x.len()], contact, Params::fast())
+    };
+    let bad = vec![BodyContact { friction: -0.5, ..thick(-1.0) }; 5];
+    let contact = ContactData { half_spaces: vec![zoo.ground; 2], ..of_bodies(bad) };
+    let error = resolver(contact).unwrap_err();
     let ResolveError::Contact(errors) = &error else { panic!("{error}") };
-    assert_eq!(errors.len(), 10, "{errors}");
+    assert_eq!(errors.len(), 11, "{errors}");
     assert!(error.to_string().contains("bodies[3].friction = -0.5"), "{error}");
-    let error = resolver().with_half_spaces(vec![]).unwrap_err();
-    assert!(error.to_string().contains("half_spaces.len() = 0: must be 1"), "{error}");
-    let mut good = resolver();
+    assert!(error.to_string().contains("half_spaces.len() = 2: must be 1"), "{error}");
+    let mut good = resolver(ContactData::default()).unwrap();
     let mut x = zoo.x.clone();
     let groups = [0; 3];
     let input = ResolveInput { groups: &groups, ..ResolveInput::default() };

@@ -5,7 +5,9 @@ use crate::common::{Flight, sheet};
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, Params, Resolver};
+use bowknot_twoway::{
+    BodyContact, ContactData, ContactSide, HalfSpaceContact, PairFriction, Params, Resolver,
+};
 
 const G: f64 = 9.81;
 const H: f64 = 0.05;
@@ -38,12 +40,12 @@ fn incline(slope: f64, friction: f64, particle: bool, params: Params) -> (Flight
     let mut params = params;
     params.contact.delta = Some(delta);
     let count = x.len();
-    let resolver = Resolver::new(model, &x, &vec![1.0; count], params)
-        .unwrap()
-        .with_bodies(vec![rough(friction)])
-        .unwrap()
-        .with_half_spaces(vec![HalfSpaceContact { friction, ..HalfSpaceContact::default() }])
-        .unwrap();
+    let contact = ContactData {
+        bodies: vec![rough(friction)],
+        half_spaces: vec![HalfSpaceContact { friction, ..HalfSpaceContact::default() }],
+        ..ContactData::default()
+    };
+    let resolver = Resolver::with_contact(model, &x, &vec![1.0; count], contact, params).unwrap();
     let v = vec![Vector::zeros(); count];
     (Flight { resolver, x, v, gravity: -G * Vector::z(), dt: 0.01 }, down, count)
 }
@@ -128,12 +130,9 @@ fn on_a_plate(friction: f64, model: FrictionModel) -> (Flight, usize) {
     let mut params = Params::fast();
     params.contact.delta = Some(0.1 * H);
     params.contact.friction_model = model;
-    let resolver = Resolver::new(collision, &x, &vec![1.0; x.len()], params)
-        .unwrap()
-        .with_bodies(vec![rough(0.0), rough(0.0)])
-        .unwrap()
-        .with_pair_friction(&[PairFriction { sides: [ContactSide::Body(1), ContactSide::Body(0)], friction }])
-        .unwrap();
+    let pair = PairFriction { sides: [ContactSide::Body(1), ContactSide::Body(0)], friction };
+    let contact = ContactData { pairs: vec![pair], ..ContactData::default() };
+    let resolver = Resolver::with_contact(collision, &x, &vec![1.0; x.len()], contact, params).unwrap();
     let v = vec![Vector::zeros(); x.len()];
     (Flight { resolver, x, v, gravity: -G * Vector::z(), dt: 0.01 }, count)
 }
@@ -215,8 +214,8 @@ fn friction_between_two_bodies_is_equal_and_opposite() {
         let model = CollisionModel::new(topology.clone(), bodies.clone(), filters, vec![]).unwrap();
         let mut params = Params::fast();
         params.contact.delta = Some(0.1 * H);
-        let mut resolver =
-            Resolver::new(model, &x, &masses, params).unwrap().with_bodies(vec![rough(friction); 2]).unwrap();
+        let contact = ContactData { bodies: vec![rough(friction); 2], ..ContactData::default() };
+        let mut resolver = Resolver::with_contact(model, &x, &masses, contact, params).unwrap();
         let y: Vec<Point> = (0..2 * n)
             .map(|i| {
                 let sign = if i < n { 1.0 } else { -0.5 };
@@ -261,10 +260,9 @@ fn frictional_results_have_the_same_bits_for_any_number_of_threads() {
             let mut params = Params::fast();
             params.contact.delta = Some(0.1 * H);
             params.solver.stop.max_steps = Some(8);
-            let mut resolver = Resolver::new(model.clone(), &x, &vec![1.0; x.len()], params)
-                .unwrap()
-                .with_bodies(vec![rough(0.5); 4])
-                .unwrap();
+            let contact = ContactData { bodies: vec![rough(0.5); 4], ..ContactData::default() };
+            let mut resolver =
+                Resolver::with_contact(model.clone(), &x, &vec![1.0; x.len()], contact, params).unwrap();
             let mut results = Vec::new();
             for _ in 0..2 {
                 let mut moved = x.clone();

@@ -26,7 +26,8 @@ fn three_sheets_above(half_spaces: Vec<HalfSpace>) -> (Vec<Point>, Resolver) {
     (x, resolver)
 }
 
-/// Moves the upper sheet by 3 cm into what is below; returns where everything is, and the bodies of all pairs.
+/// Moves the upper sheet by 3 cm into what is below; returns where everything is, and the bodies of all
+/// pairs.
 fn press(resolver: &mut Resolver, x: &[Point]) -> (Vec<Point>, Vec<[u32; 2]>, usize) {
     let mut positions = x.to_vec();
     let bodies = resolver.scene().model().vertex_body().to_vec();

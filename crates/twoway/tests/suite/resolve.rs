@@ -273,8 +273,8 @@ fn an_obstacle_waits_as_one_body() {
     assert!(report.prescribed_lag_m > 0.9);
 }
 
-/// A sheet whose pinned vertices are led onto and then below the top of a pyramid, which is just beside one of them. The
-/// rows of triangles with that vertex have a short lever on the others.
+/// A sheet whose pinned vertices are led onto and then below the top of a pyramid, which is just beside one
+/// of them. The rows of triangles with that vertex have a short lever on the others.
 #[test]
 fn cloth_stays_where_it_is_when_its_pins_are_led_into_an_obstacle() {
     let edge = 0.1;
@@ -303,7 +303,8 @@ fn cloth_stays_where_it_is_when_its_pins_are_led_into_an_obstacle() {
         }
         let input = ResolveInput { prescribed: &prescribed, groups: &groups, ..ResolveInput::default() };
         let report = resolver.resolve_with(&mut x, &y, &input, &mut ()).unwrap();
-        // Nothing asks for more than to stay above the pyramid, by the contact distance of a tenth of an edge.
+        // Nothing asks for more than to stay above the pyramid, by the contact distance of a tenth of an
+        // edge.
         let far = (0..first).map(|v| (x[v] - y[v]).norm()).fold(0.0, f64::max);
         assert!(far < depth.max(0.0) + 0.25 * edge, "{depth}: {far}, {report:?}");
         assert!(report.steps <= 40, "{depth}: {} steps", report.steps);
@@ -346,7 +347,8 @@ fn intersections_of_a_start_are_found() {
     assert!(report.intersections.len() == 3 && report.intersection_count > 3, "{report:?}");
     let result = resolver.resolve(&mut crossed.clone(), &crossed);
     // Debug builds look at each start.
-    let refused = matches!(result, Err(ResolveError::StartIntersects { count, .. }) if count == report.intersection_count);
+    let expected = report.intersection_count;
+    let refused = matches!(result, Err(ResolveError::StartIntersects { count, .. }) if count == expected);
     assert_eq!(refused, cfg!(debug_assertions));
 }
 

@@ -99,7 +99,8 @@ impl Mutation {
         match text.matches(&self.old).count() {
             1 => Ok(text.replacen(&self.old, &self.new, 1)),
             count => Err(format!(
-                "{}: its old lines are {count} times in {}, not once; bring the mutation up to date with the code",
+                "{}: its old lines are {count} times in {}, not once; bring the mutation up to date with the \
+                 code",
                 self.name, self.file
             )),
         }
@@ -132,7 +133,8 @@ mod tests {
 
     #[test]
     fn mutations_are_read_and_applied() {
-        let text = "# a comment\nfile = \"a.rs\"\nwhy = \"because\"\nold = '''\n  one\ntwo\n'''\nnew = '''\n  three\n'''\n";
+        let text = "# a comment\nfile = \"a.rs\"\nwhy = \"because\"\nold = '''\n  one\ntwo\n'''\nnew = \
+                    '''\n  three\n'''\n";
         let mutation = parse("name", text).unwrap_or_else(|fault| panic!("{fault}"));
         assert_eq!((mutation.file.as_str(), mutation.why.as_str()), ("a.rs", "because"));
         assert_eq!(mutation.apply("zero\n  one\ntwo\nfour\n"), Ok("zero\n  three\nfour\n".to_owned()));

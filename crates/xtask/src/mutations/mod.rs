@@ -15,8 +15,8 @@ use std::process::{Command, ExitCode, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Longest time of the tests with a mutation, in times of those without, and at least [`SHORTEST`]. A mutation
-/// may make a loop endless; that is noticed too.
+/// Longest time of the tests with a mutation, in times of those without, and at least [`SHORTEST`]. A
+/// mutation may make a loop endless; that is noticed too.
 const PATIENCE: f64 = 10.0;
 const SHORTEST: Duration = Duration::from_secs(120);
 

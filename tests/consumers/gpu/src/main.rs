@@ -1,4 +1,5 @@
-//! A triangle is asked to go far below another one; step by step it comes near, pushes it, and never passes through.
+//! A triangle is asked to go far below another one; step by step it comes near, pushes it, and never passes
+//! through.
 #![allow(clippy::print_stdout, reason = "a command")]
 
 use bowknot_gpu::geometry::{CollisionModel, Point, Topology};

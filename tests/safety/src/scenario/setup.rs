@@ -65,8 +65,8 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// The setup with its minimum separation and thickness raised to what coordinates up to `largest`, in units of
-    /// the scene, allow. Otherwise many problems would be refused.
+    /// The setup with its minimum separation and thickness raised to what coordinates up to `largest`, in
+    /// units of the scene, allow. Otherwise many problems would be refused.
     pub fn raised(&self, largest: f64) -> Self {
         let smallest = 1.01 * Rounding::smallest_min_separation(largest);
         let raise = |length: f64| if length > 0.0 { length.max(smallest) } else { length };

@@ -16,9 +16,9 @@ pub fn any() -> impl Strategy<Value = Scenario> {
     (drawn, bool::weighted(0.25)).prop_map(|(drawn, is_loose)| if is_loose { loosened(drawn) } else { drawn })
 }
 
-/// The problem with a contact range so short that contacts press late. The targets of the first call are so far
-/// that its steps are swept or free flights, of all bodies together in half of the problems: what the later calls
-/// know of pairs then is what these steps have left.
+/// The problem with a contact range so short that contacts press late. The targets of the first call are so
+/// far that its steps are swept or free flights, of all bodies together in half of the problems: what the
+/// later calls know of pairs then is what these steps have left.
 fn loosened(mut scenario: Scenario) -> Scenario {
     let Setup { delta, stretch, steps, .. } = scenario.setup;
     let delta = Some(1e-3 * delta.unwrap_or(1.0).min(1.0));

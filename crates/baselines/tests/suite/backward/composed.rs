@@ -124,7 +124,7 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
 
 #[test]
 fn contacts_that_keep_their_volume_stay_as_near_as_they_start_and_others_open() {
-    // Half of the desired distance apart, pressed onto each other.
+    // Half of the contact distance apart, pressed onto each other.
     let scene = Scene::two_sheets(4, 0.005);
     let n = scene.x.len() / 2;
     let target: Vec<Point> = (scene.x.iter().enumerate())

@@ -11,7 +11,7 @@ use bowknot_baselines::twoway::{
 
 const SLAB: AdditiveCcd = AdditiveCcd { slackness: 0.1, speed: ClosingSpeed::Slab, max_iterations: 1000 };
 
-fn two_way<F: ForwardStep>(
+fn two_way<F: ForwardStep<TrustRegionSearch>>(
     scene: &Scene,
     params: Params,
     forward: F,

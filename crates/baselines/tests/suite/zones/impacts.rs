@@ -50,8 +50,8 @@ fn paths_without_impacts_meet_nothing_and_paths_that_meet_have_impacts() {
 }
 
 #[test]
-fn a_pair_that_comes_from_afar_to_its_desired_distance_does_not_count_as_meeting() {
-    // 10 m above: a tenth of that is a hundred times the desired distance.
+fn a_pair_that_comes_from_afar_to_its_contact_distance_does_not_count_as_meeting() {
+    // 10 m above: a tenth of that is a hundred times the contact distance.
     let scene = Scene::vertex_above_triangle(10.0);
     let mut params = Params::fast();
     params.contact.delta = Some(0.01);

@@ -14,7 +14,7 @@ const SOLVERS: [ZoneSolver; 3] =
     [ZoneSolver::GaussSeidel, ZoneSolver::LinearSystem, ZoneSolver::AugmentedLagrangian];
 
 #[test]
-fn a_vertex_stops_at_its_desired_distance_above_a_triangle() {
+fn a_vertex_stops_at_its_contact_distance_above_a_triangle() {
     let scene = Scene::vertex_above_triangle(0.5);
     let collision = scene.collision_scene(Params::fast());
     let mut target = scene.x.clone();
@@ -83,7 +83,7 @@ fn without_thickness_what_does_not_meet_may_end_near_and_with_it_keeps_its_dista
     assert!(gap(0.0) < 0.7 * delta && gap(0.8) > 0.799 * delta);
 }
 
-/// A vertex between two plates that close to less than twice its desired distance, as in a vice.
+/// A vertex between two plates that close to less than twice its contact distance, as in a vice.
 fn vice() -> (Scene, Vec<Point>, Vec<bool>) {
     let mut x = Vec::new();
     let corners = [[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]];
@@ -96,7 +96,7 @@ fn vice() -> (Scene, Vec<Point>, Vec<bool>) {
     let model = CollisionModel::new(topology, vec![0, 0, 0, 1, 1, 1, 2], bodies, vec![]).unwrap();
     let scene = Scene { x, model };
     let mut target = scene.x.clone();
-    // The plates end 1 mm apart: no place in between is at the desired distance of both.
+    // The plates end 1 mm apart: no place in between is at the contact distance of both.
     target[3..6].iter_mut().for_each(|y| y.z = 0.001);
     (scene, target, vec![])
 }

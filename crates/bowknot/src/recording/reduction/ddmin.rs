@@ -55,8 +55,9 @@ impl<'a, 'b> Tries<'a, 'b> {
     }
 
     /// Drops units as long as the rest shows the failure: the algorithm ddmin of Zeller and Hildebrandt,
-    /// *Simplifying and Isolating Failure-Inducing Input* (2002). Each unit is a list of elements, and all units
-    /// together show the failure. Unless a limit is met, none of the units that remain can be left out alone.
+    /// *Simplifying and Isolating Failure-Inducing Input* (2002). Each unit is a list of elements, and all
+    /// units together show the failure. Unless a limit is met, none of the units that remain can be left out
+    /// alone.
     pub fn minimize(&mut self, mut units: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
         let mut parts = 2;
         while units.len() >= 2 && !self.is_over() {

@@ -24,8 +24,9 @@ pub enum Failure {
 }
 
 impl States {
-    /// What the problem fails of, and where [m], if there is a place; none if it does not fail. With `judged`, the
-    /// judge looks at every accepted step. `give_up` is asked after each step, and ends the call without a failure.
+    /// What the problem fails of, and where [m], if there is a place; none if it does not fail. With
+    /// `judged`, the judge looks at every accepted step. `give_up` is asked after each step, and ends the
+    /// call without a failure.
     ///
     /// A panic is caught; the hook of the program is called first. Arrays of the wrong length are no failure.
     pub fn failure(

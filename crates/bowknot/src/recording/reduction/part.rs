@@ -47,8 +47,8 @@ impl States {
         nearest.unwrap_or(0.0)
     }
 
-    /// The problem with these elements alone, ascending, and the vertices that they name. Vertices, bodies and
-    /// half-spaces are numbered anew in the same order.
+    /// The problem with these elements alone, ascending, and the vertices that they name. Vertices, bodies
+    /// and half-spaces are numbered anew in the same order.
     pub fn part(&self, elements: &[u32]) -> Self {
         let used: BTreeSet<u32> = elements.iter().flat_map(|&e| self.element(e)).copied().collect();
         let vertices: Vec<u32> = used.into_iter().collect();

@@ -2,7 +2,8 @@ use super::*;
 use bowknot_geometry::{HalfSpace, Point, Vector};
 use bowknot_twoway::BodyContact;
 
-/// Level sheets of n x n squares of 1 cm at these heights, each a body of its own, over a half-space far below.
+/// Level sheets of n x n squares of 1 cm at these heights, each a body of its own, over a half-space far
+/// below.
 fn sheets(n: usize, heights: &[f64]) -> States {
     let mut states = States {
         half_spaces: vec![HalfSpace { normal: Vector::z(), offset: -1.0 }],

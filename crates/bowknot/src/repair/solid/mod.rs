@@ -125,8 +125,8 @@ fn volume(mesh: &Mesh) -> f64 {
     mesh.tets.iter().map(|tet| signed_volume(&tet.map(|v| mesh.positions[v as usize])).abs()).sum()
 }
 
-/// Mean length of the edges of the tetrahedra, each counted per tetrahedron [unit of the mesh]; 0 if there are
-/// none.
+/// Mean length of the edges of the tetrahedra, each counted per tetrahedron [unit of the mesh]; 0 if there
+/// are none.
 fn mean_edge(mesh: &Mesh) -> f64 {
     let lengths = mesh.tets.iter().flat_map(|tet| {
         let [a, b, c, d] = tet.map(|v| mesh.positions[v as usize]);

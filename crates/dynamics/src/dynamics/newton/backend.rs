@@ -1,8 +1,8 @@
 //! Newton's method with its vectors on a device: what a backend gets and does.
 //!
-//! The host decides (springs, line searches, when to end), the backend computes. Between [`NewtonBackend::begin_target`]
-//! and [`NewtonBackend::target`] no vector over all nodes crosses to the other side: the host sees sums, and positions of the
-//! nodes that springs act on.
+//! The host decides (springs, line searches, when to end), the backend computes. Between
+//! [`NewtonBackend::begin_target`] and [`NewtonBackend::target`] no vector over all nodes crosses to the
+//! other side: the host sees sums, and positions of the nodes that springs act on.
 //!
 //! With d = x - x0 the displacement since the start of the time step, the potential of the bodies is
 //!
@@ -17,8 +17,8 @@
 //! | c | the gradient of these terms at the start; [`NewtonStep::gradient`] |
 //! | e | membranes, curved bends, tetrahedra, with their damping; [`ElementModel`] |
 //!
-//! so its gradient is (R + K) d + c + sum of e', and its change from x to x + u is u.((R + K)(d + u/2) + c) plus the changes
-//! of the elements: nothing cancels that is larger than the change itself.
+//! so its gradient is (R + K) d + c + sum of e', and its change from x to x + u is u.((R + K)(d + u/2) + c)
+//! plus the changes of the elements: nothing cancels that is larger than the change itself.
 
 use crate::device_work::DeviceWork;
 use crate::linear::accuracy::CgInfo;
@@ -33,8 +33,9 @@ pub type NewtonBackendError = Box<dyn Error + Send + Sync>;
 
 /// Newton iterations in single precision.
 ///
-/// Norms of residuals are those of the backend's preconditioner M, an approximation of H^-1: the squared norm of r is r.M r.
-/// All numbers are SI; vectors have one entry per node. After an error the host computes the rest of the time step itself.
+/// Norms of residuals are those of the backend's preconditioner M, an approximation of H^-1: the squared norm
+/// of r is r.M r. All numbers are SI; vectors have one entry per node. After an error the host computes the
+/// rest of the time step itself.
 pub trait NewtonBackend: Debug + Send {
     /// What it is called where runs are described.
     fn name(&self) -> String;
@@ -56,8 +57,9 @@ pub trait NewtonBackend: Debug + Send {
     /// What the backend fails of.
     fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), NewtonBackendError>;
 
-    /// Begins a target: sets the iterate, the free nodes, the nodes to [watch](Watched), and how far the others are from
-    /// where they must end. Returns where the watched nodes are at the iterate, as the backend rounds positions.
+    /// Begins a target: sets the iterate, the free nodes, the nodes to [watch](Watched), and how far the
+    /// others are from where they must end. Returns where the watched nodes are at the iterate, as the
+    /// backend rounds positions.
     ///
     /// # Errors
     /// What the backend fails of.
@@ -69,8 +71,8 @@ pub trait NewtonBackend: Debug + Send {
     /// What the backend fails of.
     fn begin_again(&mut self) -> Result<Watched, NewtonBackendError>;
 
-    /// Computes gradient and matrix of the bodies at the iterate. `absolute` says whether negative curvatures change their
-    /// sign; otherwise they are set to zero.
+    /// Computes gradient and matrix of the bodies at the iterate. `absolute` says whether negative curvatures
+    /// change their sign; otherwise they are set to zero.
     ///
     /// # Errors
     /// What the backend fails of.
@@ -82,9 +84,10 @@ pub trait NewtonBackend: Debug + Send {
     /// What the backend fails of.
     fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), NewtonBackendError>;
 
-    /// Solves H p = b over the free nodes, with springs added to gradient and matrix, and b = -(g + H q) with the gradient g
-    /// and the displacements q of the other nodes to their ends. The start is the combination, with the least energy, of
-    /// the ways from the iterate to [`NewtonStep::inertial`] and, if there is one, to the last target.
+    /// Solves H p = b over the free nodes, with springs added to gradient and matrix, and b = -(g + H q) with
+    /// the gradient g and the displacements q of the other nodes to their ends. The start is the combination,
+    /// with the least energy, of the ways from the iterate to [`NewtonStep::inertial`] and, if there is one,
+    /// to the last target.
     ///
     /// # Errors
     /// What the backend fails of.
@@ -94,8 +97,8 @@ pub trait NewtonBackend: Debug + Send {
         limits: &SolveLimits,
     ) -> Result<NewtonSolve, NewtonBackendError>;
 
-    /// Sets `sums` to the sum of b - R p over each of [`ElementModel::components`], without the elements and K, whose share
-    /// is zero [N].
+    /// Sets `sums` to the sum of b - R p over each of [`ElementModel::components`], without the elements and
+    /// K, whose share is zero [N].
     ///
     /// # Errors
     /// What the backend fails of.
@@ -107,15 +110,16 @@ pub trait NewtonBackend: Debug + Send {
     /// What the backend fails of.
     fn translate(&mut self, translations: &[Vector]) -> Result<(), NewtonBackendError>;
 
-    /// Sets the trial to the iterate plus `length` times the step p, with nodes that are not free at their ends. With a
-    /// length of 0 the trial becomes the reference that the changes of energy count from, until the next such call.
+    /// Sets the trial to the iterate plus `length` times the step p, with nodes that are not free at their
+    /// ends. With a length of 0 the trial becomes the reference that the changes of energy count from, until
+    /// the next such call.
     ///
     /// # Errors
     /// What the backend fails of.
     fn place(&mut self, length: f64) -> Result<Trial, NewtonBackendError>;
 
-    /// Begins a search along the step p: the reference as by [`Self::place`] with a length of 0, then the trial at full length.
-    /// Returns the watched nodes at the reference, and the trial.
+    /// Begins a search along the step p: the reference as by [`Self::place`] with a length of 0, then the
+    /// trial at full length. Returns the watched nodes at the reference, and the trial.
     ///
     /// # Errors
     /// What the backend fails of.
@@ -145,8 +149,9 @@ pub trait NewtonBackend: Debug + Send {
     /// What the backend fails of.
     fn target(&mut self, y: &mut [Vector]) -> Result<(), NewtonBackendError>;
 
-    /// Forces out of balance at the iterate: r = -(g - f) over the `counted` free nodes, with the gradient g of the bodies and
-    /// known forces f on the watched nodes [N]. The matrix is that of the iterate, with the matrices of springs.
+    /// Forces out of balance at the iterate: r = -(g - f) over the `counted` free nodes, with the gradient g
+    /// of the bodies and known forces f on the watched nodes [N]. The matrix is that of the iterate, with the
+    /// matrices of springs.
     ///
     /// # Errors
     /// What the backend fails of.
@@ -214,15 +219,16 @@ pub struct NewtonSolve {
     pub info: CgInfo,
     /// Squared norm of b.
     pub scale: f64,
-    /// Whether single precision gained too little, and the CPU had better solve. A residual slightly above the limit is no
-    /// reason to: then `info` says that the solve has not converged.
+    /// Whether single precision gained too little, and the CPU had better solve. A residual slightly above
+    /// the limit is no reason to: then `info` says that the solve has not converged.
     pub stalled: bool,
 }
 
 /// A trial of the line search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trial {
-    /// Potential of the bodies at the reference, relative to the quadratic terms at the start of the time step [J].
+    /// Potential of the bodies at the reference, relative to the quadratic terms at the start of the time
+    /// step [J].
     pub reference: f64,
     /// Change of the potential of the bodies since the reference [J].
     pub change: f64,

@@ -1,7 +1,8 @@
-//! The bodies of a Newton iteration, wherever they are computed: on the CPU in double precision, or on a device.
+//! The bodies of a Newton iteration, wherever they are computed: on the CPU in double precision, or on a
+//! device.
 //!
-//! Newton's method is written once, over this trait: it decides, the bodies compute. Vectors over all nodes stay with the
-//! bodies. Springs act on the *watched* nodes, whose positions come back.
+//! Newton's method is written once, over this trait: it decides, the bodies compute. Vectors over all nodes
+//! stay with the bodies. Springs act on the *watched* nodes, whose positions come back.
 
 use super::backend::NewtonBackendError;
 use crate::elements::filter::Filter;
@@ -46,20 +47,22 @@ pub trait Bodies: Send {
     /// The watched nodes where inertia leads free ones, the others at their ends [m].
     fn inertial_at_ends(&self) -> Vec<Vector>;
 
-    /// Solves for the step, with linearized springs added to gradient and matrix. The system has independent `parts`.
+    /// Solves for the step, with linearized springs added to gradient and matrix. The system has independent
+    /// `parts`.
     fn solve(&mut self, springs: &LinearSprings, parts: &Parts, limits: &Limits) -> Answer<LinearSolve>;
 
-    /// Translates each of the `groups` of components, all of whose nodes are free, so that its linear momentum in its free
-    /// directions is conserved whatever the error of the solve.
+    /// Translates each of the `groups` of components, all of whose nodes are free, so that its linear
+    /// momentum in its free directions is conserved whatever the error of the solve.
     fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()>;
 
-    /// Begins a search along the step: places the trial at a length of 0, from which changes of energy count. The next trial is
-    /// that at full length.
+    /// Begins a search along the step: places the trial at a length of 0, from which changes of energy count.
+    /// The next trial is that at full length.
     fn begin_search(&mut self) -> Answer<BodyEnergies> {
         self.place(0.0)
     }
 
-    /// Sets the trial to the iterate plus `length` times the step, with nodes that are not free at their ends.
+    /// Sets the trial to the iterate plus `length` times the step, with nodes that are not free at their
+    /// ends.
     fn place(&mut self, length: f64) -> Answer<BodyEnergies>;
 
     /// What the step promises; after a [`Self::place`].
@@ -83,7 +86,8 @@ pub trait Bodies: Send {
     /// Makes the kept trial the iterate.
     fn start_from_kept_trial(&mut self) -> Answer<()>;
 
-    /// The forces that are out of balance at the iterate, with the known forces of the springs, over `counted` free nodes.
+    /// The forces that are out of balance at the iterate, with the known forces of the springs, over
+    /// `counted` free nodes.
     fn out_of_balance(
         &mut self,
         repulsion: &Repulsion,

@@ -6,29 +6,30 @@ use super::iteration::Accuracy;
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
 
-/// Share of the contact forces by which a Newton step may have been off. Larger: fewer iterations, but an error of 1
-/// % in friction changes the sliding of bodies by 5 % if friction nearly holds them. Smaller: more iterations.
+/// Share of the contact forces by which a Newton step may have been off. Larger: fewer iterations, but an
+/// error of 1 % in friction changes the sliding of bodies by 5 % if friction nearly holds them. Smaller: more
+/// iterations.
 const FORCE_TOLERANCE: f64 = 0.002;
 
-/// Number of Newton iterations after the first for which [`FORCE_TOLERANCE`] applies. More: piles of cloth, where
-/// thousands of contacts open and close, cost more. Fewer: their contact forces are less accurate.
+/// Number of Newton iterations after the first for which [`FORCE_TOLERANCE`] applies. More: piles of cloth,
+/// where thousands of contacts open and close, cost more. Fewer: their contact forces are less accurate.
 const STRICT_ITERATIONS: usize = 10;
 
-/// Share of the contact forces by which a later step may have been off. Larger: the method gives up earlier. Smaller:
-/// it makes all of [`MAX_ITERATIONS`] more often.
+/// Share of the contact forces by which a later step may have been off. Larger: the method gives up earlier.
+/// Smaller: it makes all of [`MAX_ITERATIONS`] more often.
 const LOOSE_FORCE_TOLERANCE: f64 = 0.3;
 
-/// Largest number of Newton iterations after the first. More: targets with many contacts cost more. Fewer: what is
-/// wrong is found after the collision stage, in the next target.
+/// Largest number of Newton iterations after the first. More: targets with many contacts cost more. Fewer:
+/// what is wrong is found after the collision stage, in the next target.
 const MAX_ITERATIONS: usize = 12;
 
-/// Share of the last Newton step that the line search must have kept. Larger: more iterations where friction changes
-/// from sticking to sliding. Smaller: targets may end where a step was cut short.
+/// Share of the last Newton step that the line search must have kept. Larger: more iterations where friction
+/// changes from sticking to sliding. Smaller: targets may end where a step was cut short.
 const MIN_STEP_LENGTH: f64 = 0.9;
 
 impl Newton<'_> {
-    /// Computes the target with springs: makes Newton iterations until the forces that the linear system gave to the
-    /// contacts are those that the contacts have, then corrections.
+    /// Computes the target with springs: makes Newton iterations until the forces that the linear system gave
+    /// to the contacts are those that the contacts have, then corrections.
     pub(super) fn solve_with_contacts(&mut self) -> Answer<NewtonInfo> {
         let accuracy = if self.is_first { Accuracy::Full } else { Accuracy::Inexact };
         let first = self.iterate(accuracy)?;

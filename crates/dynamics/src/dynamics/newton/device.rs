@@ -262,9 +262,10 @@ fn for_device(springs: &LinearSprings) -> AssemblySprings<'_> {
     AssemblySprings { springs: springs.all(), starts: springs.starts(), entries: springs.all_entries() }
 }
 
-/// Translates each of the `groups` of components at the trial so that its linear momentum at the end of the time step is that
-/// of the forces on it in its free directions, in double precision: inertia and the forces of air balance where the
-/// translation minimizes them, and forces within a group have no sum. On the device positions and sums are rounded to single precision.
+/// Translates each of the `groups` of components at the trial so that its linear momentum at the end of the
+/// time step is that of the forces on it in its free directions, in double precision: inertia and the forces
+/// of air balance where the translation minimizes them, and forces within a group have no sum. On the device
+/// positions and sums are rounded to single precision.
 pub fn conserve_momentum(
     model: &DynamicsModel,
     params: &DynamicsParams,
@@ -282,16 +283,21 @@ pub fn conserve_momentum(
     }
 }
 
-/// Lets `run` work on the bodies on a device, from a beginning. If there is a `trial`, it becomes the last one, by node,
-/// which then is the last target.
+/// A target that a device computes.
+pub struct DeviceTarget<'a> {
+    pub device: &'a mut Device,
+    pub beginning: Beginning<'a>,
+    /// Becomes the last trial, by node, which then is the last target.
+    pub trial: Option<&'a mut [Vector]>,
+}
+
+/// Lets `run` work on the bodies on a device, from a beginning.
 pub fn on_device<T>(
     model: &DynamicsModel,
     params: &DynamicsParams,
     step: &Step,
     course: &mut Course,
-    device: &mut Device,
-    beginning: Beginning<'_>,
-    trial: Option<&mut [Vector]>,
+    DeviceTarget { device, beginning, trial }: DeviceTarget<'_>,
     run: &mut dyn FnMut(&mut dyn Bodies, &mut Course) -> Answer<T>,
 ) -> Answer<T> {
     let on_device = match course.on_device.take() {

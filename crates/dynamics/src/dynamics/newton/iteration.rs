@@ -72,9 +72,9 @@ impl Newton<'_> {
         }
     }
 
-    /// The largest squared norms that [`Limits::tolerance`] may be relative to: with a residual of that share of it, the
-    /// [`Residual::distance`](crate::Residual::distance) of each component of the part is below half of the tolerance of the time
-    /// step.
+    /// The largest squared norms that [`Limits::tolerance`] may be relative to: with a residual of that share
+    /// of it, the [`Residual::distance`](crate::Residual::distance) of each component of the part is below
+    /// half of the tolerance of the time step.
     fn largest_scales(&self, parts: &Parts) -> Vec<f64> {
         let share = 0.5 * self.course.step_tolerance / (self.dt * self.params.newton.cg_tolerance);
         let mut lightest = vec![f64::INFINITY; parts.count()];

@@ -8,13 +8,13 @@ use crate::dynamics::info::NewtonInfo;
 /// over 10^5 nodes, with a margin.
 const ENERGY_ROUNDING: f64 = 1e-12;
 
-/// Share of the bound of rounding that differences of energies are likely to be off on a device: a decrease above it tells
-/// how accurate the quadratic model is.
+/// Share of the bound of rounding that differences of energies are likely to be off on a device: a decrease
+/// above it tells how accurate the quadratic model is.
 const LIKELY_ROUNDING: f64 = 1.0 / 16.0;
 
 impl Newton<'_> {
-    /// Shortens the full Newton step until the potential decreases enough; the result is the trial. Steps that are
-    /// rounding errors are accepted, as energies would differ by rounding only.
+    /// Shortens the full Newton step until the potential decreases enough; the result is the trial. Steps
+    /// that are rounding errors are accepted, as energies would differ by rounding only.
     ///
     /// Prescribed nodes are at their keyframes in all trials: the line is over free nodes only and starts
     /// from the state with free nodes at x. The predicted decrease p.b is that of the quadratic model from
@@ -59,8 +59,8 @@ impl Newton<'_> {
         Ok(())
     }
 
-    /// Places the trial. Returns the potential there with springs, and the sum of the sizes of its parts, to which rounding
-    /// is relative [J].
+    /// Places the trial. Returns the potential there with springs, and the sum of the sizes of its parts, to
+    /// which rounding is relative [J].
     pub fn place(&mut self, length: f64) -> Answer<(f64, f64)> {
         let energies = self.bodies.place(length)?;
         Ok(self.potential(energies))

@@ -57,8 +57,8 @@ impl Inertia<'_> {
     }
 }
 
-/// The groups of components that springs join, of which no node is held by a keyframe, and which can move freely in some
-/// direction.
+/// The groups of components that springs join, of which no node is held by a keyframe, and which can move
+/// freely in some direction.
 pub(crate) fn free_groups(model: &DynamicsModel, repulsion: &Repulsion, free: &[bool]) -> Vec<Group> {
     let mut groups = Groups::new(model.components.len());
     repulsion.join(model, &mut groups, true);
@@ -67,8 +67,8 @@ pub(crate) fn free_groups(model: &DynamicsModel, repulsion: &Repulsion, free: &[
     groups
 }
 
-/// The translation of a group in its free directions that takes away the `force` on it [N], against the `resistance` to
-/// translations [N/m]. Forces within the group have no sum.
+/// The translation of a group in its free directions that takes away the `force` on it [N], against the
+/// `resistance` to translations [N/m]. Forces within the group have no sum.
 pub(crate) fn translation(group: &Group, resistance: &Matrix3<f64>, force: &Vector) -> Vector {
     let held = (Matrix3::identity() - group.free) * resistance.trace();
     // The matrix is positive definite unless the state is not finite, which the caller reports.
@@ -76,9 +76,10 @@ pub(crate) fn translation(group: &Group, resistance: &Matrix3<f64>, force: &Vect
     inverse.map_or_else(Vector::zeros, |inverse| group.free * (inverse * (group.free * force)))
 }
 
-/// Translates a group so that the `residual` of the linear solve sums to zero over it in its free directions. Inner forces
-/// then cancel, and its linear momentum there is conserved to rounding at any tolerance. In such a translation H sums to
-/// inertia and drag alone, so the translation is the sum of residuals divided by these.
+/// Translates a group so that the `residual` of the linear solve sums to zero over it in its free directions.
+/// Inner forces then cancel, and its linear momentum there is conserved to rounding at any tolerance. In such
+/// a translation H sums to inertia and drag alone, so the translation is the sum of residuals divided by
+/// these.
 pub(crate) fn shift_group(
     model: &DynamicsModel,
     group: &Group,

@@ -7,7 +7,8 @@ use crate::elements::filter::Filter;
 
 impl Newton<'_> {
     /// The residual of the time step at the iterate over the nodes that are `counted`; contact forces are
-    /// those of the springs there. Also the distance of each component [m]. The next target prepares the springs again.
+    /// those of the springs there. Also the distance of each component [m]. The next target prepares the
+    /// springs again.
     pub fn residual(&mut self, counted: &[bool]) -> Answer<(Residual, Vec<f64>)> {
         let filter = Filter::new(self.params.newton.hessian_filter, self.is_first);
         let iterate = self.bodies.iterate();

@@ -49,8 +49,8 @@ pub struct Course {
     /// Whether springs must be prepared: they have been set since the last Newton iteration, or the step has
     /// just begun.
     pub unprepared: bool,
-    /// By component, see [`crate::linear::accuracy::Limits::min_scales`]: that of the first solve of the time step, unless that is too large
-    /// for the tolerance of the time step; 0 before.
+    /// By component, see [`crate::linear::accuracy::Limits::min_scales`]: that of the first solve of the time
+    /// step, unless that is too large for the tolerance of the time step; 0 before.
     pub scales: Vec<f64>,
     /// See [`crate::Dynamics::set_step_tolerance`] [m].
     pub step_tolerance: f64,

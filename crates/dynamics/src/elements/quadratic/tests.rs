@@ -72,8 +72,9 @@ fn rigid_motions_store_no_energy_and_forces_balance() {
 
 #[test]
 fn pure_bending_has_its_energy() {
-    // A small deflection u = c (x z, 0, -x^2 / 2) bends without shear: strain e_xx = c z alone, so the energy is the integral of
-    // (lambda / 2 + mu) c^2 z^2. The mean of z^2 over a tetrahedron is (sum of z_i^2 + (sum of z_i)^2) / 20.
+    // A small deflection u = c (x z, 0, -x^2 / 2) bends without shear: strain e_xx = c z alone, so the energy
+    // is the integral of (lambda / 2 + mu) c^2 z^2. The mean of z^2 over a tetrahedron is (sum of z_i^2 +
+    // (sum of z_i)^2) / 20.
     let c = 1e-4;
     let rest = rest();
     let x = rest.map(|p| p + Vector::new(p.x * p.z, 0.0, -0.5 * p.x * p.x) * c);

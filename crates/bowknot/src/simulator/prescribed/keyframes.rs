@@ -1,0 +1,77 @@
+//! Which vertices are prescribed in a time step, where to, and which of them lag behind.
+
+use crate::simulator::{Scratch, Simulator};
+use bowknot_geometry::Point;
+use bowknot_twoway::ResolveInput;
+use std::collections::BTreeMap;
+
+/// Distances below this are rounding [m].
+const NO_DISTANCE: f64 = 1e-9;
+
+impl Simulator {
+    /// Fills in which vertices are prescribed at `time`, the end of the time step, and their keyframes. The
+    /// vertices of a pin form a group: they move by one fraction of their way.
+    pub(crate) fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
+        let Self { world, anchors, attachments, positions, dt, .. } = self;
+        let Scratch { prescribed, keyframes, groups, .. } = scratch;
+        let count = world.collision_vertices();
+        prescribed.clear();
+        prescribed.resize(positions.len(), false);
+        groups.clear();
+        groups.resize(count, ResolveInput::NO_GROUP);
+        keyframes.clone_from(positions);
+        for body in world.bodies.iter().filter(|body| body.kind.is_none()) {
+            let range = body.vertices.start as usize..body.vertices.end as usize;
+            prescribed[range.clone()].fill(true);
+            body.motion.positions(&world.base[range.clone()], time, &mut keyframes[range]);
+        }
+        for (index, ((pin, anchor), attachments)) in
+            world.pins.iter().zip(anchors).zip(attachments).enumerate()
+        {
+            if !pin.holds(time, *dt) {
+                continue;
+            }
+            if anchor.is_empty() && pin.start > 0.0 {
+                let place = pin.motion.as_ref().map(|motion| motion.at(pin.start));
+                let undo = |v: &u32| {
+                    let x = &positions[*v as usize];
+                    place.map_or(*x, |place| place.undo(x))
+                };
+                *anchor = pin.vertices.iter().map(undo).collect();
+            }
+            if pin.follow.is_some() && attachments.is_empty() {
+                let home = |v: &u32| world.positions[*v as usize];
+                let homes: Vec<Point> = pin.vertices.iter().map(home).collect();
+                *attachments = world.attach(pin, if anchor.is_empty() { &homes } else { anchor });
+            }
+            let place = pin.motion.as_ref().map(|motion| motion.at(time));
+            for (k, &v) in pin.vertices.iter().enumerate() {
+                let v = v as usize;
+                let home = anchor.get(k).unwrap_or(&world.positions[v]);
+                prescribed[v] = true;
+                let followed = attachments.get(k).and_then(|a| a.as_ref()?.place(keyframes));
+                let led = || place.map_or(*home, |place| place.apply(home));
+                keyframes[v] = followed.unwrap_or_else(led);
+                if v < count {
+                    groups[v] = index as u32;
+                }
+            }
+        }
+    }
+
+    /// The obstacles and pins that are behind their keyframes at the end of the time step, and how far [m].
+    pub(crate) fn waiting(&self, time: f64, scratch: &Scratch) -> BTreeMap<String, f64> {
+        let behind = |vertices: &mut dyn Iterator<Item = u32>| {
+            vertices
+                .map(|v| (scratch.keyframes[v as usize] - self.positions[v as usize]).norm())
+                .fold(0.0, f64::max)
+        };
+        let obstacles = self.world.bodies.iter().filter(|body| body.kind.is_none() && !body.motion.is_rest());
+        let obstacles = obstacles.map(|body| (&body.name, behind(&mut body.vertices.clone())));
+        let pins = self.world.pins.iter().filter(|pin| pin.holds(time, self.dt));
+        let pins = pins.map(|pin| (&pin.name, behind(&mut pin.vertices.iter().copied())));
+        let rounding = NO_DISTANCE.max(self.backend.resolution());
+        let waiting = obstacles.chain(pins).filter(|(_, behind)| *behind > rounding);
+        waiting.map(|(name, behind)| (name.clone(), behind)).collect()
+    }
+}
