@@ -125,6 +125,9 @@ impl Place {
     }
 }
 
+/// What resolves the collisions, and what computes the dynamics.
+type Both = (Box<dyn CollisionBackend>, Box<dyn bowknot::dynamics::NewtonBackend>);
+
 /// What the names of devices begin with.
 const GPU: &str = "gpu: ";
 
@@ -140,7 +143,7 @@ fn not_here(name: &str, folder: &Path) -> Failure {
 /// The backends on a device.
 #[cfg(feature = "gpu")]
 mod device {
-    use super::{CollisionBackend, Failure, GPU, Path, Place, Scene, not_here};
+    use super::{Both, CollisionBackend, Failure, GPU, Path, Place, Scene, not_here};
     use bowknot::dynamics::NewtonBackend;
     use bowknot::gpu::{Adapter, Choice, ConjugateGradients, Device, DeviceEngine};
 
@@ -150,7 +153,7 @@ mod device {
     }
 
     /// Both on one device.
-    pub fn both(place: &Place) -> Result<(Box<dyn CollisionBackend>, Box<dyn NewtonBackend>), Failure> {
+    pub fn both(place: &Place) -> Result<Both, Failure> {
         let (name, engine) = open(place, "--backend cpu")?;
         let dynamics = ConjugateGradients::new(name.clone(), engine.beside());
         Ok((Box::new(Device::new(name, engine)), Box::new(dynamics)))
@@ -204,14 +207,14 @@ mod device {
 /// What takes the place of the devices in a build without them.
 #[cfg(not(feature = "gpu"))]
 mod device {
-    use super::{CollisionBackend, Failure, GPU, Path, Place, Scene, not_built_in, not_here};
+    use super::{Both, CollisionBackend, Failure, GPU, Path, Place, Scene, not_built_in, not_here};
     use bowknot::dynamics::NewtonBackend;
 
     pub fn collisions(_place: &Place) -> Result<Box<dyn CollisionBackend>, Failure> {
         Err(not_built_in())
     }
 
-    pub fn both(_place: &Place) -> Result<(Box<dyn CollisionBackend>, Box<dyn NewtonBackend>), Failure> {
+    pub fn both(_place: &Place) -> Result<Both, Failure> {
         Err(not_built_in())
     }
 

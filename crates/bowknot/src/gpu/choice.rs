@@ -49,12 +49,12 @@ impl Choice {
         if adapter.is_software() {
             return on_cpu(format!("{adapter} computes on the CPU"));
         }
-        let device = DeviceEngine::open(&adapter).and_then(|engine| {
+        let device = DeviceEngine::open(&adapter).map(|engine| {
             let dynamics = with_dynamics.then(|| engine.beside());
             let name = adapter.to_string();
             let dynamics = dynamics.map(|engine| ConjugateGradients::new(name.clone(), engine));
             let dynamics = dynamics.map(|dynamics| Box::new(dynamics) as Box<dyn NewtonBackend>);
-            Ok((Box::new(Device::new(name, engine)) as Box<dyn CollisionBackend>, dynamics))
+            (Box::new(Device::new(name, engine)) as Box<dyn CollisionBackend>, dynamics)
         });
         let device = match device {
             Ok(device) => device,
