@@ -33,8 +33,6 @@ const QUICK: &[(&str, u32)] = &[
     ("early-contact", 3),
     ("goals", 13),
     ("gpu", 60),
-    ("gpu-host", 3),
-    ("gpu-prediction", 60),
     ("stability", 60),
     ("record", 150),
 ];
