@@ -149,11 +149,11 @@ fn carried(contacts: &ContactSet) -> Vec<PairMultipliers> {
 
 impl CollisionBackend for Comparing {
     fn name(&self) -> String {
-        self.device.name()
+        CollisionBackend::name(&self.device)
     }
 
     fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
-        self.device.prepare(scene, home)
+        CollisionBackend::prepare(&mut self.device, scene, home)
     }
 
     fn is_ordered(&self) -> bool {
@@ -161,7 +161,7 @@ impl CollisionBackend for Comparing {
     }
 
     fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
-        self.device.order(scene, positions)
+        CollisionBackend::order(&mut self.device, scene, positions)
     }
 
     fn resolution(&self) -> f64 {
@@ -207,7 +207,7 @@ impl CollisionBackend for Comparing {
     }
 
     fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
-        self.device.judge(scene, positions)
+        CollisionBackend::judge(&mut self.device, scene, positions)
     }
 }
 

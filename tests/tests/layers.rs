@@ -57,7 +57,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     // The judge shares no code with what it judges.
     ("bowknot-check", &["bowknot-geometry"]),
     ("bowknot-report", &["bowknot-geometry", "bowknot-io"]),
-    ("bowknot-gpu", &["bowknot-check", "bowknot-dynamics", "bowknot-geometry", "bowknot-proximity"]),
+    (
+        "bowknot-gpu",
+        &["bowknot-check", "bowknot-dynamics", "bowknot-geometry", "bowknot-proximity", "bowknot-twoway"],
+    ),
     (
         "bowknot",
         &[

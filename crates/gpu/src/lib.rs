@@ -10,6 +10,7 @@
 //! | `adapter` | the devices of this machine |
 //! | `tree`, `model`, `edges`, `bricks`, `adjacency` | what the host prepares for a scene |
 //! | `collision` | steps toward a target that nothing passes through |
+//! | `two_way` | scenes of `bowknot-twoway`: a processor of the two-way loop |
 //! | `linear`, `assembly` | linear solves of the dynamics, and their matrices |
 //! | `newton` | Newton's method of the dynamics with its vectors on a device |
 //! | `potential` | the potential of the bodies and its gradient |
@@ -35,6 +36,7 @@ mod potential;
 mod recording;
 mod stages;
 mod tree;
+mod two_way;
 
 pub use bowknot_dynamics as dynamics;
 pub use bowknot_geometry as geometry;
@@ -50,6 +52,7 @@ pub use layout::{Candidate, Kind, NONE};
 pub use linear::ConjugateGradients;
 pub use model::{Constraints, Lengths};
 pub use recording::{BufferId, DispatchView, Phase, Recording};
+pub use two_way::{Device, GpuResolveError, resolve_on};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

@@ -1,10 +1,9 @@
 //! Where a scene is simulated faster: on the CPU or on a device.
 
-use super::device::Device;
 use crate::simulator::{Checkpoint, CollisionBackend, Cpu, SimulationError, Simulator};
 use bowknot_dynamics::NewtonBackend;
 use bowknot_errors::counted;
-use bowknot_gpu::{Adapter, ConjugateGradients, DeviceEngine};
+use bowknot_gpu::{Adapter, ConjugateGradients, Device, DeviceEngine};
 use bowknot_scene::Scene;
 use std::time::Instant;
 

@@ -8,18 +8,11 @@
 //! [`ConjugateGradients`] does the dynamics, which stay on the CPU otherwise
 //! ([`Simulator::set_dynamics_backend`](crate::Simulator::set_dynamics_backend)).
 
+mod backend;
 mod choice;
-mod device;
-mod error;
-mod flight;
-mod judge;
-mod pairs;
-mod setup;
 
 pub use bowknot_gpu::{
-    Adapter, BufferId, ComparingEngine, ConjugateGradients, DeviceEngine, DispatchView, Engine, GpuError,
-    Phase, Profile, Recording, StageTime, TwinEngine,
+    Adapter, BufferId, ComparingEngine, ConjugateGradients, Device, DeviceEngine, DispatchView, Engine,
+    GpuError, GpuResolveError, Phase, Profile, Recording, StageTime, TwinEngine, resolve_on,
 };
 pub use choice::Choice;
-pub use device::{Device, resolve_on};
-pub use error::GpuResolveError;

@@ -177,3 +177,21 @@ fn kernels_and_twins_agree_on_rows_with_pins() {
         &differences[..differences.len().min(5)]
     );
 }
+
+/// A device that does not answer in time ends a call with an error, which names it.
+#[test]
+fn a_device_that_does_not_answer_is_lost() {
+    let scene = scene();
+    let mut engine = device();
+    engine.set_time_limit(Some(std::time::Duration::ZERO));
+    let lost = match with_settings(engine, &scene, &Constraints::default(), &Settings::default()) {
+        Err(error) => error.to_string(),
+        Ok(mut collision) => {
+            let target = target(&scene, &mut fastrand::Rng::with_seed(6));
+            let begun = collision.begin(&Call::toward(&target)).map_err(|error| error.to_string());
+            let stepped = begun.and_then(|()| collision.steps(8).map_err(|error| error.to_string()));
+            stepped.expect_err("no time")
+        }
+    };
+    assert!(lost.contains("no answer within 0 s"), "{lost}");
+}

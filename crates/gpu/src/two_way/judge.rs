@@ -1,9 +1,9 @@
 //! Judges what a device computes, on the CPU: a faulty driver causes an error, never an intersecting state.
 
 use super::error::GpuResolveError;
-use bowknot_check::{Judge, MotionJudge, StateOptions};
 use bowknot_geometry::{BodyFilter, HalfSpace, Point};
 use bowknot_twoway::CollisionScene;
+use bowknot_twoway::check::{Judge, MotionJudge, StateOptions};
 
 /// The judge of a scene. To make one takes longer than to judge a state, so it is kept.
 #[derive(Debug, Default)]

@@ -3,12 +3,9 @@
 use super::error::GpuResolveError;
 use super::judge::SceneJudge;
 use super::{flight, pairs, setup};
-use crate::simulator::{BackendError, CollisionBackend, MIN_VERTICES};
+use crate::{Call, Carried, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop};
 use bowknot_dynamics::DeviceWork;
 use bowknot_geometry::{BodyFilter, HalfSpace, Point};
-use bowknot_gpu::{
-    Call, Carried, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop,
-};
 use bowknot_twoway::{
     AcceptedState, Call as RunningCall, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers,
     Processor, Progress, Residuals, ResolveInput, Resolver, Statistics, StopTest, max_stretch,
@@ -16,6 +13,9 @@ use bowknot_twoway::{
 use rayon::prelude::*;
 use std::fmt::Debug;
 use std::ops::ControlFlow;
+
+/// Vertices that one thread takes at least, in loops that do little for each.
+const MIN_VERTICES: usize = 4096;
 
 /// Share of the largest friction from which on a contact slides: single precision.
 const SLIDES: f64 = 1.0 - 1e-5;
@@ -266,25 +266,31 @@ impl<E: Engine + Debug + Send> Device<E> {
     }
 }
 
-impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
-    fn name(&self) -> String {
-        self.name.clone()
+impl<E: Engine + Debug + Send> Device<E> {
+    /// What it is called where runs are described.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
-    fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
-        Ok(self.set_home(scene, home)?)
+    /// Prepares for a scene that begins at `home` [m]; results depend on these positions.
+    ///
+    /// # Errors
+    /// Settings of the scene that the kernels do not have.
+    pub fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), GpuResolveError> {
+        self.set_home(scene, home)
     }
 
-    fn work(&self) -> DeviceWork {
+    /// What its device was asked for since it was opened.
+    pub fn work(&self) -> DeviceWork {
         let prepared = || self.prepared.as_ref().map(|prepared| prepared.collision.engine().work());
         self.engine.as_ref().map(Engine::work).or_else(prepared).unwrap_or_default()
     }
 
-    fn is_ordered(&self) -> bool {
-        true
-    }
-
-    fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+    /// Orders the trees of the search by these positions [m], until it is told others.
+    ///
+    /// # Errors
+    /// The device has failed.
+    pub fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), GpuResolveError> {
         if self.order == positions {
             return Ok(());
         }
@@ -296,35 +302,46 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
         if ordered.is_err() {
             self.release();
         }
-        Ok(ordered.map_err(GpuResolveError::from)?)
+        Ok(ordered?)
     }
 
-    fn device_seconds(&self) -> Option<f64> {
+    /// Seconds of the device in the last call, if it has time stamps.
+    pub fn device_seconds(&self) -> Option<f64> {
         self.device_seconds
     }
 
-    fn resolution(&self) -> f64 {
+    /// How far positions may be off because they lie on a grid [m].
+    pub fn resolution(&self) -> f64 {
         self.prepared.as_ref().map_or(0.0, |prepared| prepared.collision.grid().quantum())
     }
 
-    fn resolve(
+    /// As [`Resolver::resolve_with`], whose state becomes that of the call. Nobody may rely on the positions before they have
+    /// been [judged](Self::judge).
+    ///
+    /// # Errors
+    /// [`GpuResolveError`]; `positions` are then unchanged.
+    pub fn resolve(
         &mut self,
         resolver: &mut Resolver,
         positions: &mut [Point],
         target: &[Point],
         input: &ResolveInput<'_>,
         observer: &mut dyn Observer,
-    ) -> Result<Statistics, BackendError> {
+    ) -> Result<Statistics, GpuResolveError> {
         let resolved = self.solve(resolver, positions, target, input, observer);
         if resolved.is_err() {
             // Some buffers may be gone, of which a larger one could not be had.
             self.release();
         }
-        Ok(resolved?)
+        resolved
     }
 
-    fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
-        Ok(self.judge.refuse_intersections(scene, positions)?)
+    /// Judges positions [m] that calls have led to, by exact tests on the CPU.
+    ///
+    /// # Errors
+    /// They intersect, or cannot be judged.
+    pub fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), GpuResolveError> {
+        self.judge.refuse_intersections(scene, positions)
     }
 }
 
@@ -414,10 +431,10 @@ impl<E: Engine> Processor for Steps<'_, E> {
         Ok((self.reports.len(), observed))
     }
 
-    fn report(&self, k: usize) -> bowknot_stepper::StepReport {
+    fn report(&self, k: usize) -> bowknot_twoway::stepper::StepReport {
         let StepReport { remaining, largest_move, unhindered, unhindered_lag, .. } = self.reports[k];
-        let others = bowknot_stepper::StepReport::default();
-        bowknot_stepper::StepReport { remaining, largest_move, unhindered, unhindered_lag, ..others }
+        let others = bowknot_twoway::stepper::StepReport::default();
+        bowknot_twoway::stepper::StepReport { remaining, largest_move, unhindered, unhindered_lag, ..others }
     }
 
     fn residuals(&mut self, k: usize) -> Residuals {

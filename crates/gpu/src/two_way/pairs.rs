@@ -1,8 +1,8 @@
 //! Pairs of a device as the CPU names them.
 
+use crate::{Candidate, Carried, ContactRow, Kind};
 use bowknot_geometry::{PairKind, Topology};
-use bowknot_gpu::{Candidate, Carried, ContactRow, Kind};
-use bowknot_proximity::{Pair, PairList};
+use bowknot_twoway::proximity::{Pair, PairList};
 use bowknot_twoway::{CollisionScene, PairMultipliers};
 use rayon::prelude::*;
 

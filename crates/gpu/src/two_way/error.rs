@@ -1,10 +1,9 @@
 //! Why a device does not solve a collision problem.
 
-use crate::simulator::BackendError;
-use bowknot_check::{CheckError, Intersection};
+use crate::CollisionError;
 use bowknot_errors::counted;
-use bowknot_gpu::CollisionError;
 use bowknot_twoway::ResolveError;
+use bowknot_twoway::check::{CheckError, Intersection};
 
 /// Why a collision problem was not solved on a device.
 #[derive(Debug, thiserror::Error)]
@@ -54,13 +53,4 @@ pub enum GpuResolveError {
 
 fn remedy(instead: &Option<&'static str>) -> String {
     instead.map_or_else(String::new, |instead| format!(" or {instead}"))
-}
-
-impl From<GpuResolveError> for BackendError {
-    fn from(error: GpuResolveError) -> Self {
-        match error {
-            GpuResolveError::Input(error) => Self::Refused(error),
-            error => Self::Failed(Box::new(error)),
-        }
-    }
 }

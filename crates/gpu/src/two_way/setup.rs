@@ -1,10 +1,10 @@
 //! A scene of the CPU as the device needs it.
 
 use super::error::GpuResolveError;
-use bowknot_constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
+use crate::{Collision, CollisionError, Constraints, Engine, Grid, Lengths, Settings};
 use bowknot_geometry::Point;
-use bowknot_gpu::{Collision, CollisionError, Constraints, Engine, Grid, Lengths, Settings};
-use bowknot_stepper::{Bound, TrustRegionRule};
+use bowknot_twoway::constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
+use bowknot_twoway::stepper::{Bound, TrustRegionRule};
 use bowknot_twoway::{CallInput, CollisionScene, ContactSide, ResolveInput, StopRule, UNKNOWN_SWEEPS};
 
 /// Sweeps of a device in place of so many on the CPU: five for eight. Each goes over buckets of rows and clusters of edges more
