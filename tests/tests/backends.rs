@@ -280,10 +280,12 @@ fn the_grid_follows_bodies_and_a_resumed_run_has_the_same_bits() {
     let [mut cpu, mut whole, mut resumed] = [(); 3].map(|()| flight());
     whole.set_backend(Box::new(twins())).expect("a backend");
     resumed.set_backend(Box::new(twins())).expect("a backend");
-    let mut rows = [0, 0];
+    let mut contacts = [0, 0];
     for step in 0..10 {
-        rows[0] += cpu.step().expect("a step").contact_rows;
-        rows[1] += whole.step().expect("a step").contact_rows;
+        // A two-way step that is the last of its call may need no rows where contacts press.
+        for (contacts, simulator) in contacts.iter_mut().zip([&mut cpu, &mut whole]) {
+            *contacts += simulator.step().expect("a step").pressing_contacts;
+        }
         if step == 4 {
             resumed.restore(&whole.checkpoint()).expect("the same scene");
         } else if step > 4 {
@@ -291,7 +293,7 @@ fn the_grid_follows_bodies_and_a_resumed_run_has_the_same_bits() {
         }
     }
     assert!(whole.positions()[0].x > 5.5, "{}", whole.positions()[0]);
-    assert!(rows[0] > 0 && rows[1] > 0, "{rows:?}");
+    assert!(contacts[0] > 0 && contacts[1] > 0, "{contacts:?}");
     assert!(whole.positions() == resumed.positions());
     let center = |simulator: &Simulator| simulator.dynamics_model().center_of_mass(simulator.positions());
     let apart = (center(&whole) - center(&cpu)).norm();
