@@ -1,6 +1,5 @@
 //! The adapters of this machine, and the choice of one.
 
-use crate::engine::MOST_IMMEDIATES;
 use crate::error::GpuError;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
@@ -8,6 +7,9 @@ use std::task::{Context, Poll, Waker};
 /// Storage buffers that a stage binds at most, and threads of a workgroup: every device that follows WebGPU has as many.
 const STORAGE_BUFFERS: u32 = 8;
 const WORKGROUP_THREADS: u32 = 256;
+
+/// Bytes of parameters that fit into immediates; no stage has more.
+pub(crate) const MOST_IMMEDIATES: u32 = 96;
 
 /// A device that could compute.
 #[derive(Debug)]

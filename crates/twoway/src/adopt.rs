@@ -3,7 +3,7 @@
 use crate::call::CallInput;
 use crate::error::ResolveError;
 use crate::multipliers::PairMultipliers;
-use crate::resolver::{Resolver, check_pairs};
+use crate::resolver::Resolver;
 use crate::search::TrustRegionSearch;
 use crate::stages::{BackwardStep, ForwardStep, Search};
 use crate::statistics::Statistics;
@@ -50,7 +50,7 @@ impl<B: BackwardStep, F: ForwardStep<TrustRegionSearch>> Resolver<TrustRegionSea
             Some(near) => search.update_among(scene, state, near, &mut Statistics::default()),
             None => search.update(scene, state, &mut Statistics::default()),
         }
-        check_pairs(scene, state)?;
+        state.check_pairs(scene)?;
         state.start.copy_from_slice(end.start);
         state.y.copy_from_slice(end.aims);
         state.step = statistics.steps;

@@ -4,7 +4,6 @@ use crate::algorithm::{Processor, Progress};
 use crate::error::ResolveError;
 use crate::filter::filter_slip;
 use crate::observer::{AcceptedState, Observer};
-use crate::resolver::check_pairs;
 use crate::scene::CollisionScene;
 use crate::stages::{BackwardStep, ForwardStep, Search};
 use crate::state::ResolveState;
@@ -42,14 +41,14 @@ impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Processor for Cpu<'_, S, B, 
         // Within the thread pool: a parallel loop that starts outside of it pays for the crossing.
         self.report = rayon::scope(|_| {
             self.search.update(self.scene, self.state, statistics);
-            check_pairs(self.scene, self.state)?;
+            self.state.check_pairs(self.scene)?;
             if self.state.step == 0 && self.scene.friction_model() == FrictionModel::Filter {
                 filter_slip(self.scene, self.state);
             }
             self.project(statistics);
             let report = self.advance(statistics);
             // A swept step lists pairs of its own.
-            check_pairs(self.scene, self.state).map(|()| report)
+            self.state.check_pairs(self.scene).map(|()| report)
         })?;
         statistics.skipped.searches += usize::from(statistics.searches == searches);
         let Self { scene, state, forward, report, .. } = self;

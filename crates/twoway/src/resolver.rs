@@ -18,7 +18,6 @@ use crate::stages::{BackwardStep, ForwardStep, Search};
 use crate::state::{ContactSet, ResolveState};
 use crate::statistics::Statistics;
 use crate::stretch::max_stretch;
-use crate::validation::check_rows;
 use bowknot_check::{CheckError, Judge, StateOptions, StateReport};
 use bowknot_geometry::{BodyFilter, HalfSpace, Point};
 use bowknot_proximity::CollisionModel;
@@ -138,7 +137,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Resolver<S, B, F> {
     ) -> Result<&ContactSet, ResolveError> {
         self.begin(positions, positions, input)?;
         self.search.update(&self.scene, &mut self.state, &mut Statistics::default());
-        check_pairs(&self.scene, &self.state)?;
+        self.state.check_pairs(&self.scene)?;
         Ok(&self.state.contacts)
     }
 
@@ -195,7 +194,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Resolver<S, B, F> {
             statistics.waits = self.forward.waits(&self.scene, &self.state);
         }
         self.finish(&mut statistics);
-        check_pairs(&self.scene, &self.state)?;
+        self.state.check_pairs(&self.scene)?;
         [statistics.max_step_stretch, statistics.max_stretch] =
             max_stretch(&self.scene, [positions, self.scene.rest()], &self.state.x);
         positions.copy_from_slice(&self.state.x);
@@ -267,9 +266,4 @@ impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Resolver<S, B, F> {
             statistics.slowest_body = None;
         }
     }
-}
-
-/// Refuses a state with so many pairs that rows could not be numbered.
-pub(crate) fn check_pairs(scene: &CollisionScene, state: &ResolveState) -> Result<(), ResolveError> {
-    check_rows(state.contacts.pairs.len(), scene.model().topology().edges.len())
 }

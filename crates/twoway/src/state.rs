@@ -1,6 +1,9 @@
 //! What moves during a call.
 
 use crate::call::CallInput;
+use crate::error::ResolveError;
+use crate::scene::CollisionScene;
+use crate::validation::check_rows;
 use bowknot_geometry::{Point, Separation, Vector};
 use bowknot_proximity::PairList;
 use bowknot_stepper::Contacts;
@@ -66,6 +69,11 @@ impl ContactSet {
 }
 
 impl ResolveState {
+    /// Refuses so many pairs that rows could not be numbered.
+    pub(crate) fn check_pairs(&self, scene: &CollisionScene) -> Result<(), ResolveError> {
+        check_rows(self.contacts.pairs.len(), scene.model().topology().edges.len())
+    }
+
     /// Starts a call at `positions` toward `target`.
     pub(crate) fn begin(&mut self, positions: &[Point], target: &[Point], call: CallInput) {
         for buffer in [&mut self.start, &mut self.x, &mut self.previous] {

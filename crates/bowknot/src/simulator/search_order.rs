@@ -1,8 +1,8 @@
 //! The order in which a collision backend keeps what it searches in.
 
-use super::Simulator;
-use super::error::SimulationError;
+use super::backend::{BackendError, CollisionBackend};
 use bowknot_geometry::Point;
+use bowknot_twoway::CollisionScene;
 
 /// Time steps for which a backend keeps the order. To order anew costs as much as a search or two on the
 /// host; in as many time steps things move past a few neighbors.
@@ -28,25 +28,25 @@ impl SearchOrder {
         self.positions = positions.to_vec();
         self.is_new = true;
     }
-}
 
-impl Simulator {
-    /// Every so many time steps, orders what the backend searches in by the present positions: grains mix.
-    pub(super) fn order_search(&mut self) -> Result<(), SimulationError> {
-        if !self.backend.is_ordered() {
+    /// Tells a backend the order before a time step, after so many steps, if it does not know it. Every so many time steps
+    /// that is the order of the present `positions` [m]: grains mix. Before, it is that of `home`, the positions that the scene
+    /// begins with [m].
+    pub fn tell(
+        &mut self,
+        backend: &mut dyn CollisionBackend,
+        scene: &CollisionScene,
+        steps: usize,
+        [home, positions]: [&[Point]; 2],
+    ) -> Result<(), BackendError> {
+        if !backend.is_ordered() {
             return Ok(());
         }
-        let count = self.world.collision_vertices();
-        let order = &mut self.search_order;
-        if self.step > 0 && self.step.is_multiple_of(STEPS_OF_AN_ORDER) {
-            order.adopt(&self.positions[..count]);
+        if steps > 0 && steps.is_multiple_of(STEPS_OF_AN_ORDER) {
+            self.adopt(positions);
         }
-        if order.is_new {
-            let by =
-                if order.positions.is_empty() { &self.world.positions[..count] } else { &order.positions };
-            let ordered = self.backend.order(self.resolver.scene(), by);
-            ordered.map_err(|source| SimulationError::backend(&self.world, self.step, source))?;
-            order.is_new = false;
+        if std::mem::take(&mut self.is_new) {
+            backend.order(scene, if self.positions.is_empty() { home } else { &self.positions })?;
         }
         Ok(())
     }

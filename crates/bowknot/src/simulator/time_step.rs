@@ -86,6 +86,15 @@ impl Simulator {
         Ok(statistics)
     }
 
+    /// Tells the backend of collisions how to order what it searches in.
+    fn order_search(&mut self) -> Result<(), SimulationError> {
+        let Self { world, resolver, backend, search_order, positions, step, .. } = self;
+        let count = world.collision_vertices();
+        let places = [&world.positions[..count], &positions[..count]];
+        let told = search_order.tell(&mut **backend, resolver.scene(), *step, places);
+        told.map_err(|source| SimulationError::backend(world, *step, source))
+    }
+
     /// Takes an abandoned time step back; `anchors` were those at its start.
     fn take_back(&mut self, anchors: Vec<Vec<Point>>, scratch: Scratch) -> Result<(), SimulationError> {
         self.positions.clone_from(&scratch.start);

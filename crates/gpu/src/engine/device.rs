@@ -1,8 +1,8 @@
 //! Runs recordings on a device.
 
+use super::bindings::{Bindings, PARAMS_STRIDE, Place};
 use super::opened::Opened;
 use super::phases::{PhaseClock, PhaseSeconds};
-use super::pipelines::{Bindings, PARAMS_STRIDE, Place};
 use super::profile::Profile;
 use super::traits::{Engine, SMALLEST_BUFFER};
 use crate::adapter::{Adapter, wait};

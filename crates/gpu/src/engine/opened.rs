@@ -1,6 +1,6 @@
 //! An open device, which several engines share: its queue, its compiled stages, and what its driver reports.
 
-use super::pipelines::{Compiled, compile};
+use super::compiled::{Compiled, compile};
 use crate::adapter::Adapter;
 use crate::error::GpuError;
 use crate::stages::Stage;

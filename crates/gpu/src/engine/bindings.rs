@@ -1,28 +1,14 @@
-//! Compiled stages, and the bind groups of their dispatches.
+//! The bind groups of dispatches.
 
+use super::compiled::Compiled;
 use super::opened::Opened;
 use crate::recording::{BufferId, Dispatch};
-use crate::stages::{Access, Stage};
 use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
 /// Bytes between the parameters of two dispatches in a buffer: what every device can offset by.
 pub const PARAMS_STRIDE: u64 = 256;
-
-/// Bytes of parameters that fit into immediates; no stage has more.
-pub const MOST_IMMEDIATES: u32 = 96;
-
-/// What the shaders declare, and what takes its place where parameters are immediates.
-const IN_A_BUFFER: &str = "@group(0) @binding(0) var<uniform> params";
-const IMMEDIATE: &str = "var<immediate> params";
-
-/// A compiled stage.
-#[derive(Debug)]
-pub struct Compiled {
-    pub pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
-}
 
 /// The stages that an engine has run, with bind groups of its buffers. Bind groups are kept, since iterations bind the
 /// same buffers again and again, and to make one takes the host longer than to record a dispatch.
@@ -110,44 +96,4 @@ impl Bindings {
             bound.groups.clear();
         }
     }
-}
-
-pub fn compile(device: &wgpu::Device, stage: &'static Stage, has_immediates: bool) -> Compiled {
-    let entry =
-        |binding: u32, ty: wgpu::BufferBindingType, has_dynamic_offset: bool| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
-            count: None,
-        };
-    let params = (!has_immediates).then(|| entry(0, wgpu::BufferBindingType::Uniform, true));
-    let buffers = stage.bindings.iter().zip(1..).map(|(access, binding)| {
-        let read_only = *access == Access::Read;
-        entry(binding, wgpu::BufferBindingType::Storage { read_only }, false)
-    });
-    let entries: Vec<wgpu::BindGroupLayoutEntry> = params.into_iter().chain(buffers).collect();
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(stage.name),
-        entries: &entries,
-    });
-    let source = stage.source();
-    let source = if has_immediates { source.replace(IN_A_BUFFER, IMMEDIATE) } else { source };
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(stage.name),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(stage.name),
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: if has_immediates { MOST_IMMEDIATES } else { 0 },
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(stage.name),
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    Compiled { pipeline, layout }
 }
