@@ -5,7 +5,7 @@ use std::ops::{Add, Sub};
 /// Counts and seconds of the host beside a device, since the device was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeviceWork {
-    /// Command buffers with dispatches that were submitted.
+    /// Recordings with dispatches that were submitted.
     pub submissions: usize,
     /// Dispatches in them.
     pub dispatches: usize,

@@ -25,6 +25,8 @@ struct Bound {
     places: HashMap<Vec<BufferId>, usize>,
     /// None: one of its buffers was freed.
     groups: Vec<Option<wgpu::BindGroup>>,
+    /// Places in `groups` that are free.
+    free: Vec<usize>,
 }
 
 /// Where the stage of a dispatch and its bind group are.
@@ -45,7 +47,12 @@ impl Bindings {
     ) -> Place {
         let stage = *self.places.entry(dispatch.stage.name).or_insert_with(|| {
             let compiled = opened.stage(dispatch.stage);
-            self.stages.push(Bound { compiled, places: HashMap::new(), groups: Vec::new() });
+            self.stages.push(Bound {
+                compiled,
+                places: HashMap::new(),
+                groups: Vec::new(),
+                free: Vec::new(),
+            });
             self.stages.len() - 1
         });
         let bound = &mut self.stages[stage];
@@ -60,12 +67,16 @@ impl Bindings {
         });
         let entries: Vec<wgpu::BindGroupEntry<'_>> =
             (!opened.has_immediates).then_some(params).into_iter().chain(buffers).collect();
-        bound.groups.push(Some(opened.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let made = Some(opened.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(dispatch.stage.name),
             layout: &bound.compiled.layout,
             entries: &entries,
-        })));
-        let group = bound.groups.len() - 1;
+        }));
+        let group = bound.free.pop().unwrap_or_else(|| {
+            bound.groups.push(None);
+            bound.groups.len() - 1
+        });
+        bound.groups[group] = made;
         bound.places.insert(dispatch.buffers.clone(), group);
         Place { stage, group }
     }
@@ -78,11 +89,12 @@ impl Bindings {
 
     /// Forgets bind groups with a buffer, so that its memory is free.
     pub fn forget(&mut self, buffer: BufferId) {
-        for Bound { places, groups, .. } in &mut self.stages {
+        for Bound { places, groups, free, .. } in &mut self.stages {
             places.retain(|buffers, place| {
                 let is_kept = !buffers.contains(&buffer);
                 if !is_kept {
                     groups[*place] = None;
+                    free.push(*place);
                 }
                 is_kept
             });
@@ -94,6 +106,7 @@ impl Bindings {
         for bound in &mut self.stages {
             bound.places.clear();
             bound.groups.clear();
+            bound.free.clear();
         }
     }
 }

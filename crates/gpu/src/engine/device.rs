@@ -10,6 +10,7 @@ use crate::error::GpuError;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
 use bowknot_dynamics::DeviceWork;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// Most dispatches of a command buffer. The device begins with the first ones while the host records the others.
@@ -19,7 +20,10 @@ const MOST_DISPATCHES: usize = 32;
 /// answer for two.
 const MOST_SECONDS: f64 = 0.1;
 
-/// Time without an answer after which a device counts as lost.
+/// Command buffers that the host waits for at once.
+const AWAITED: usize = 64;
+
+/// Time after which a device counts as lost that has not finished so many command buffers.
 const TIME_LIMIT: Duration = Duration::from_secs(120);
 
 /// Buffers and bind groups on a device. Several engines may share the device.
@@ -41,6 +45,10 @@ pub struct DeviceEngine {
     work: DeviceWork,
     /// Most dispatches of the next command buffers.
     most_dispatches: usize,
+    /// Command buffers since the host waited last, every so many of them.
+    submitted: Vec<wgpu::SubmissionIndex>,
+    /// Number of command buffers since then.
+    command_buffers: usize,
     time_limit: Option<Duration>,
 }
 
@@ -77,6 +85,8 @@ impl DeviceEngine {
             clock: PhaseClock::new(&opened.device, &opened.queue),
             work: DeviceWork::default(),
             most_dispatches: MOST_DISPATCHES,
+            submitted: Vec::new(),
+            command_buffers: 0,
             time_limit,
             opened,
         }
@@ -250,25 +260,29 @@ impl DeviceEngine {
     /// Waits for what was submitted and takes the first bytes of a buffer.
     fn map(&self, staging: &wgpu::Buffer, bytes: u64) -> Result<Vec<u32>, GpuError> {
         staging.map_async(wgpu::MapMode::Read, ..bytes, |_| {});
-        let polled = self
-            .opened
-            .device
-            .poll(wgpu::PollType::Wait { submission_index: None, timeout: self.time_limit });
-        self.opened.check()?;
-        match polled {
-            Ok(_) => {}
-            Err(wgpu::PollError::Timeout) => {
-                let seconds = self.time_limit.unwrap_or_default().as_secs_f64();
-                return Err(self.opened.lost(format!("no answer within {seconds} s")));
-            }
-            Err(error) => return Err(self.opened.driver(error.to_string())),
-        }
+        self.submitted.iter().try_for_each(|index| self.wait_for(Some(index.clone())))?;
+        self.wait_for(None)?;
         let view =
             staging.get_mapped_range(..bytes).map_err(|error| self.opened.driver(error.to_string()))?;
         let words = bytemuck::pod_collect_to_vec(&view[..]);
         drop(view);
         staging.unmap();
         Ok(words)
+    }
+
+    /// Waits for a submission, or for all of them.
+    fn wait_for(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
+        let wait = wgpu::PollType::Wait { submission_index, timeout: self.time_limit };
+        let polled = self.opened.device.poll(wait);
+        self.opened.check()?;
+        match polled {
+            Ok(_) => Ok(()),
+            Err(wgpu::PollError::Timeout) => {
+                let seconds = self.time_limit.unwrap_or_default().as_secs_f64();
+                Err(self.opened.give_up(format!("no answer within {seconds} s")))
+            }
+            Err(error) => Err(self.opened.driver(error.to_string())),
+        }
     }
 }
 
@@ -338,7 +352,7 @@ impl Engine for DeviceEngine {
         clock.iter_mut().for_each(PhaseClock::begin);
         let submitted = self.submit(recording, &places, read, &mut clock);
         self.work.encode_s += timer.elapsed().as_secs_f64();
-        let result = submitted.and_then(|bytes| self.read(bytes, read, dispatches, &mut clock));
+        let result = submitted.and_then(|bytes| self.read(bytes, read, &mut clock));
         self.clock = clock;
         result
     }
@@ -382,7 +396,9 @@ impl DeviceEngine {
         let bytes = 4 * words + clock.as_ref().map_or(0, PhaseClock::bytes);
         if self.staging.size() < bytes {
             self.work.buffers += 1;
-            self.staging = staging_buffer(&self.opened.device, bytes.next_power_of_two());
+            let most = self.opened.device.limits().max_buffer_size;
+            self.staging =
+                staging_buffer(&self.opened.device, bytes.next_power_of_two().min(most).max(bytes));
         }
         let mut encoder = self.encoder();
         self.encode_reads(&mut encoder, read);
@@ -393,7 +409,7 @@ impl DeviceEngine {
 
     /// Submits dispatches, if there are any.
     fn submit_dispatches(
-        &self,
+        &mut self,
         dispatches: &mut Vec<Placed<'_>>,
         clock: &mut Option<PhaseClock>,
     ) -> Result<(), GpuError> {
@@ -405,9 +421,14 @@ impl DeviceEngine {
             None => {
                 let mut encoder = self.encoder();
                 self.encode(&mut encoder, dispatches, clock);
-                self.opened.queue.submit([encoder.finish()]);
+                let index = self.opened.queue.submit([encoder.finish()]);
+                self.command_buffers += 1;
+                if self.command_buffers.is_multiple_of(AWAITED) {
+                    self.submitted.push(index);
+                }
             }
         }
+        self.opened.unread_dispatches.fetch_add(dispatches.len(), Ordering::Relaxed);
         dispatches.clear();
         Ok(())
     }
@@ -417,17 +438,25 @@ impl DeviceEngine {
         &mut self,
         bytes: u64,
         read: &[(BufferId, usize)],
-        dispatches: usize,
         clock: &mut Option<PhaseClock>,
     ) -> Result<Vec<Vec<u32>>, GpuError> {
         if bytes == 0 {
             return Ok(read.iter().map(|_| Vec::new()).collect());
         }
         let timer = Instant::now();
-        let all = self.map(&self.staging, bytes)?;
+        let all = self.map(&self.staging, bytes);
+        self.submitted.clear();
+        self.command_buffers = 0;
+        if all.is_err() {
+            // It may still be mapped.
+            self.staging = staging_buffer(&self.opened.device, self.staging.size());
+        }
+        let all = all?;
         let seconds = timer.elapsed().as_secs_f64();
         self.work.wait_s += seconds;
-        self.most_dispatches = dispatches_within(MOST_SECONDS, seconds, dispatches);
+        let dispatches = self.opened.unread_dispatches.swap(0, Ordering::Relaxed);
+        self.most_dispatches =
+            dispatches_within(MOST_SECONDS, seconds, dispatches).unwrap_or(self.most_dispatches);
         let words: usize = read.iter().map(|(_, words)| words).sum();
         clock.iter_mut().for_each(|clock| clock.add(&all[words..]));
         let mut all = all.into_iter();
@@ -435,10 +464,11 @@ impl DeviceEngine {
     }
 }
 
-/// Most dispatches of a command buffer, where so many took `seconds` and a command buffer may take `most` [s].
-fn dispatches_within(most: f64, seconds: f64, dispatches: usize) -> usize {
+/// Most dispatches of a command buffer, where so many took `seconds` and a command buffer may take `most` [s]; None where
+/// there were none.
+fn dispatches_within(most: f64, seconds: f64, dispatches: usize) -> Option<usize> {
     let fit = most * dispatches as f64 / seconds;
-    (fit as usize).clamp(1, MOST_DISPATCHES)
+    (dispatches > 0).then(|| (fit as usize).clamp(1, MOST_DISPATCHES))
 }
 
 fn dispatches_of(recording: &Recording) -> impl Iterator<Item = &Dispatch> {
@@ -476,9 +506,10 @@ mod tests {
 
     #[test]
     fn command_buffers_of_slow_dispatches_have_few() {
-        assert_eq!(dispatches_within(0.1, 1.0, 100), 10);
-        assert_eq!(dispatches_within(0.1, 5.0, 2), 1);
-        assert_eq!(dispatches_within(0.1, 1e-3, 500), MOST_DISPATCHES);
-        assert_eq!(dispatches_within(0.1, 0.0, 0), 1);
+        assert_eq!(dispatches_within(0.1, 1.0, 100), Some(10));
+        assert_eq!(dispatches_within(0.1, 5.0, 2), Some(1));
+        assert_eq!(dispatches_within(0.1, 1e-3, 500), Some(MOST_DISPATCHES));
+        // What is read without dispatches tells nothing.
+        assert_eq!(dispatches_within(0.1, 1.0, 0), None);
     }
 }

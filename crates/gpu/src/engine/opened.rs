@@ -5,6 +5,7 @@ use crate::adapter::Adapter;
 use crate::error::GpuError;
 use crate::stages::Stage;
 use std::collections::HashMap;
+use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A device that is open.
@@ -17,11 +18,13 @@ pub(super) struct Opened {
     pub has_immediates: bool,
     /// Compiled stages by name.
     stages: Mutex<HashMap<&'static str, Arc<Compiled>>>,
-    /// What the driver reported since the last look: it does so from other threads.
+    /// Dispatches that were submitted since the host waited last.
+    pub unread_dispatches: AtomicUsize,
+    /// What the driver reported since the last look: it does so from other threads. That the device is lost stays.
     failure: Arc<Mutex<Option<Failure>>>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Failure {
     Driver(String),
     Lost(String),
@@ -45,7 +48,15 @@ impl Opened {
             note(&shared, Failure::Lost(message));
         });
         let has_immediates = device.features().contains(wgpu::Features::IMMEDIATES);
-        Ok(Self { name, device, queue, has_immediates, stages: Mutex::default(), failure })
+        Ok(Self {
+            name,
+            device,
+            queue,
+            has_immediates,
+            stages: Mutex::default(),
+            unread_dispatches: AtomicUsize::new(0),
+            failure,
+        })
     }
 
     /// A stage, compiled when it is first asked for.
@@ -57,21 +68,28 @@ impl Opened {
         Arc::clone(compiled)
     }
 
-    /// The first failure since the last look, as an error.
+    /// The first failure since the last look, as an error; a lost device at each look.
     pub fn check(&self) -> Result<(), GpuError> {
-        let found = self.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = match &*failure {
+            Some(Failure::Lost(_)) => failure.clone(),
+            _ => failure.take(),
+        };
         match found {
             None => Ok(()),
             Some(Failure::Driver(message)) => Err(self.driver(message)),
-            Some(Failure::Lost(reason)) => Err(self.lost(reason)),
+            Some(Failure::Lost(reason)) => Err(GpuError::Lost { adapter: self.name.clone(), reason }),
         }
+    }
+
+    /// Gives the device up, for all engines on it.
+    pub fn give_up(&self, reason: String) -> GpuError {
+        let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        *failure = Some(Failure::Lost(reason.clone()));
+        GpuError::Lost { adapter: self.name.clone(), reason }
     }
 
     pub fn driver(&self, message: String) -> GpuError {
         GpuError::Driver { adapter: self.name.clone(), message }
-    }
-
-    pub fn lost(&self, reason: String) -> GpuError {
-        GpuError::Lost { adapter: self.name.clone(), reason }
     }
 }

@@ -1,4 +1,5 @@
 use super::{ALL, Access};
+use crate::adapter::MOST_IMMEDIATES;
 use crate::{assembly, cpu, layout, linear, newton, potential};
 use naga::{AddressSpace, StorageAccess, TypeInner};
 
@@ -30,6 +31,9 @@ fn shaders_fit_their_stages() {
             found[place.binding as usize] = Some(variable.space);
         }
         assert_eq!(found[0], Some(AddressSpace::Uniform), "{}", stage.name);
+        let uniforms = module.global_variables.iter().filter(|(_, v)| v.space == AddressSpace::Uniform);
+        let sizes: Vec<u32> = uniforms.map(|(_, v)| module.types[v.ty].inner.size(module.to_ctx())).collect();
+        assert!(sizes.len() == 1 && sizes[0] <= MOST_IMMEDIATES, "{}: {sizes:?}", stage.name);
         for (binding, access) in stage.bindings.iter().enumerate() {
             let write = StorageAccess::LOAD | StorageAccess::STORE;
             let expected = if *access == Access::Read { StorageAccess::LOAD } else { write };

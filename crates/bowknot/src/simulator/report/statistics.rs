@@ -178,7 +178,7 @@ pub struct StepSeconds {
 /// What the devices of a time step were asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeviceCounts {
-    /// Command buffers with dispatches that were submitted.
+    /// Recordings with dispatches that were submitted.
     pub submissions: usize,
     /// Dispatches in them.
     pub dispatches: usize,
