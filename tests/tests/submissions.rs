@@ -1,14 +1,14 @@
 //! How often a simulation on a device waits for it: steps that are submitted together have the same bits as
 //! one by one.
 
+use bowknot::dynamics::DeviceWork;
 use bowknot::gpu::{ConjugateGradients, Device, TwinEngine};
-use bowknot::simulator::DeviceCounts;
 use bowknot::{Scene, Simulator};
 use bowknot_geometry::Point;
 
 /// A run with so many steps per submission at most.
 struct Course {
-    counts: DeviceCounts,
+    counts: DeviceWork,
     two_way_steps: usize,
     /// Calls of the backend.
     calls: usize,
@@ -24,16 +24,12 @@ fn course(scene: &Scene, time_steps: usize, most: usize, with_dynamics: bool) ->
         let dynamics = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
         simulator.set_dynamics_backend(Some(Box::new(dynamics))).expect("elements that the kernels have");
     }
-    let (mut two_way_steps, mut calls, mut counts) = (0, 0, DeviceCounts::default());
+    let (mut two_way_steps, mut calls, mut counts) = (0, 0, DeviceWork::default());
     for _ in 0..time_steps {
         let statistics = simulator.step().expect("a step");
         two_way_steps += statistics.two_way_steps;
         calls += statistics.newton_iterations;
-        let of_step = statistics.device.unwrap_or_default();
-        counts.submissions += of_step.submissions;
-        counts.dispatches += of_step.dispatches;
-        counts.waits += of_step.waits;
-        counts.buffers += of_step.buffers;
+        counts = counts + statistics.device.unwrap_or_default();
     }
     Course { counts, two_way_steps, calls, end: simulator.positions().to_vec() }
 }
@@ -52,7 +48,7 @@ fn scenes_ask_for_so_much() {
     let counts = scenes.map(|(name, scale, time_steps)| {
         let scene = Scene::builtin(name, scale).expect("a scene");
         let scene = if name == "drape" { scene.with_sets(&falls).expect("a speed") } else { scene };
-        let DeviceCounts { submissions, dispatches, waits, buffers, .. } =
+        let DeviceWork { submissions, dispatches, waits, buffers, .. } =
             course(&scene, time_steps, 8, true).counts;
         (name, [submissions, dispatches, waits, buffers])
     });

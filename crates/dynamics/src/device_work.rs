@@ -1,9 +1,10 @@
 //! What a device was asked for.
 
+use serde::{Deserialize, Serialize};
 use std::ops::{Add, Sub};
 
 /// Counts and seconds of the host beside a device, since the device was opened.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DeviceWork {
     /// Recordings with dispatches that were submitted.
     pub submissions: usize,

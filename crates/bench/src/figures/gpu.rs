@@ -5,7 +5,7 @@ use crate::bench::{Bench, Size};
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, geometric_mean, largest, short};
 use anyhow::{Context, Result, anyhow};
-use bowknot::dynamics::NewtonBackend;
+use bowknot::dynamics::{DeviceWork, NewtonBackend};
 use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine, Profile, StageTime};
 use bowknot::simulator::{Checkpoint, CollisionBackend};
 use bowknot::{Scene, Simulator, StepStatistics};
@@ -230,10 +230,7 @@ impl Course {
             |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
         let last = cpu.centers.len() - 1;
         let apart = cpu.centers[last].iter().zip(&gpu.centers[last]).map(distance).fold(0.0, f64::max);
-        let counted = |of: fn(&bowknot::simulator::DeviceCounts) -> usize| {
-            gpu.mean(|step| step.device.as_ref().map_or(0.0, |device| of(device) as f64))
-        };
-        let host = |step: &StepStatistics| step.seconds.host.unwrap_or_default();
+        let work = |of: fn(&DeviceWork) -> f64| gpu.mean(|step| step.device.as_ref().map_or(0.0, of));
         table.row([
             self.name.as_str().into(),
             self.scale.into(),
@@ -247,13 +244,13 @@ impl Course {
             gpu.mean(|step| step.cg_iterations as f64).into(),
             cpu.mean(|step| step.two_way_steps as f64).into(),
             gpu.mean(|step| step.two_way_steps as f64).into(),
-            counted(|device| device.submissions).into(),
-            counted(|device| device.dispatches).into(),
-            counted(|device| device.waits).into(),
-            counted(|device| device.buffers).into(),
-            counted(|device| device.departures).into(),
-            (1e3 * gpu.mean(|step| host(step).encode)).into(),
-            (1e3 * gpu.mean(|step| host(step).wait)).into(),
+            work(|work| work.submissions as f64).into(),
+            work(|work| work.dispatches as f64).into(),
+            work(|work| work.waits as f64).into(),
+            work(|work| work.buffers as f64).into(),
+            work(|work| work.departures as f64).into(),
+            (1e3 * work(|work| work.encode_s)).into(),
+            (1e3 * work(|work| work.wait_s)).into(),
             (1e3 * gpu.mean(|step| step.seconds.total - step.seconds.dynamics)).into(),
             (1e3 * gpu.mean(|step| step.seconds.dynamics)).into(),
             (1e3 * apart).into(),

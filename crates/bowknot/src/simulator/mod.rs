@@ -31,8 +31,8 @@ pub use checkpoint::Checkpoint;
 pub use contact_forces::{CarriedContacts, ContactForce, ContactMean};
 pub use error::{SimulationError, describe_intersections};
 pub use report::{
-    AcceptedStep, CollisionProblem, DeviceCounts, Energy, HostSeconds, Iterated, SimulationObserver,
-    StepSeconds, StepStatistics, Unsolved, WaitingElements, cpu_seconds, peak_memory_bytes,
+    AcceptedStep, CollisionProblem, Energy, Iterated, SimulationObserver, StepSeconds, StepStatistics,
+    Unsolved, WaitingElements, cpu_seconds, peak_memory_bytes,
 };
 pub use sleep::SleepState;
 pub use start::NearStart;

@@ -79,7 +79,8 @@ impl Simulator {
         self.fall_asleep()?;
         self.update_presence(&mut statistics)?;
         self.close(timer, cpu_start, &mut statistics);
-        statistics.set_device_work(&(self.device_work() - work_start));
+        let work = self.device_work() - work_start;
+        statistics.device = (work.dispatches > 0).then_some(work);
         if let Some(body) = &statistics.slowest_body {
             tracing::debug!(step, %body, remaining_m = statistics.remaining_m, "collisions did not converge");
         }

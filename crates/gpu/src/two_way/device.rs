@@ -37,7 +37,7 @@ pub fn resolve_on<E: Engine + Debug + Send>(
     observer: &mut dyn Observer,
 ) -> Result<Statistics, GpuResolveError> {
     let mut device = Device::new(String::new(), engine);
-    device.set_home(resolver.scene(), positions)?;
+    device.prepare(resolver.scene(), positions)?;
     let mut end = positions.to_vec();
     let statistics = device.solve(resolver, &mut end, target, input, observer)?;
     device.judge.refuse_intersections(resolver.scene(), &end)?;
@@ -132,7 +132,11 @@ impl<E: Engine + Debug + Send> Device<E> {
         self.prepared.as_ref().map(|prepared| prepared.collision.engine())
     }
 
-    fn set_home(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), GpuResolveError> {
+    /// Prepares for a scene that begins at `home` [m]; results depend on these positions.
+    ///
+    /// # Errors
+    /// Settings of the scene that the kernels do not have.
+    pub fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), GpuResolveError> {
         setup::refuse_unsupported(scene)?;
         self.home = home.to_vec();
         self.order = home.to_vec();
@@ -270,14 +274,6 @@ impl<E: Engine + Debug + Send> Device<E> {
     /// What it is called where runs are described.
     pub fn name(&self) -> &str {
         &self.name
-    }
-
-    /// Prepares for a scene that begins at `home` [m]; results depend on these positions.
-    ///
-    /// # Errors
-    /// Settings of the scene that the kernels do not have.
-    pub fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), GpuResolveError> {
-        self.set_home(scene, home)
     }
 
     /// What its device was asked for since it was opened.

@@ -11,6 +11,6 @@ pub(crate) use blocking::element_words;
 pub(crate) use observer::Relay;
 pub use observer::{AcceptedStep, CollisionProblem, Iterated, SimulationObserver};
 pub use process::{cpu_seconds, peak_memory_bytes};
-pub use statistics::{DeviceCounts, Energy, HostSeconds, StepSeconds, StepStatistics};
+pub use statistics::{Energy, StepSeconds, StepStatistics};
 pub(crate) use unsolved::Search;
 pub use unsolved::Unsolved;

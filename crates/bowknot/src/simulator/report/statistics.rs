@@ -127,7 +127,7 @@ pub struct StepStatistics {
     pub interior_solves: usize,
     /// What devices were asked for; none on the CPU.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub device: Option<DeviceCounts>,
+    pub device: Option<DeviceWork>,
     /// Vertices of bodies that sleep during the next time step, those inside of solids included.
     #[serde(default)]
     pub asleep_vertices: usize,
@@ -168,47 +168,11 @@ pub struct StepSeconds {
     /// none on the CPU and on a GPU without time stamps, where all four are 0 and `other` has them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub device: Option<f64>,
-    /// Of the host beside a device: recording and submitting, and waiting for results; none without a device.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub host: Option<HostSeconds>,
     /// Everything else: observers such as `--check` and `--trace`, and the loop itself.
     pub other: f64,
 }
 
-/// What the devices of a time step were asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct DeviceCounts {
-    /// Recordings with dispatches that were submitted.
-    pub submissions: usize,
-    /// Dispatches in them.
-    pub dispatches: usize,
-    /// Times that the host waited for results.
-    pub waits: usize,
-    /// Buffers that were made.
-    pub buffers: usize,
-    /// Whether the CPU finished the time step, because single precision was not enough: 1, else 0.
-    pub departures: usize,
-}
-
-/// Seconds of the host beside a device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct HostSeconds {
-    /// Recording and submitting.
-    pub encode: f64,
-    /// Waiting for results.
-    pub wait: f64,
-}
-
 impl StepStatistics {
-    /// Sets what devices were asked for; nothing if there is none.
-    pub(crate) fn set_device_work(&mut self, work: &DeviceWork) {
-        let DeviceWork { submissions, dispatches, waits, buffers, departures, encode_s, wait_s } = *work;
-        if dispatches > 0 {
-            self.device = Some(DeviceCounts { submissions, dispatches, waits, buffers, departures });
-            self.seconds.host = Some(HostSeconds { encode: encode_s, wait: wait_s });
-        }
-    }
-
     /// Adds a Newton iteration.
     pub(crate) fn add_newton(&mut self, info: &NewtonInfo, seconds: f64) {
         self.newton_iterations += 1;
