@@ -59,18 +59,20 @@ impl LimitedGraph {
         let mut steps = vec![Vector::zeros(); free];
         let mut momentum = 1.0_f64;
         for _ in 0..MOST_STEPS {
-            // Points are ahead of `last` by the momentum. A step from there.
-            let step = |v: usize| self.step(v, points);
-            steps.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(v, s)| *s = step(v));
-            let longest =
-                steps.par_iter().with_min_len(CHUNK).map(Vector::norm_squared).reduce(|| 0.0, f64::max);
-            // Fixed parts, so that the sum does not depend on the threads.
-            let parts = (steps.par_chunks(CHUNK), points[..free].par_chunks(CHUNK), last.par_chunks(CHUNK));
-            let ahead: Vec<f64> = parts
-                .into_par_iter()
-                .map(|(s, x, l)| s.iter().zip(x).zip(l).map(|((s, x), l)| s.dot(&(x + s - l))).sum())
-                .collect();
-            let goes_back = ahead.iter().sum::<f64>() < 0.0;
+            // Points are ahead of `last` by the momentum. A step from there. Fixed parts, so that the sum does not
+            // depend on the threads.
+            let parts = steps.par_chunks_mut(CHUNK).enumerate().map(|(part, steps)| {
+                let (mut ahead, mut longest) = (0.0, 0.0_f64);
+                for (v, step) in (CHUNK * part..).zip(steps) {
+                    *step = self.step(v, points);
+                    ahead += step.dot(&(points[v] + *step - last[v]));
+                    longest = longest.max(step.norm_squared());
+                }
+                (ahead, longest)
+            });
+            let parts: Vec<(f64, f64)> = parts.collect();
+            let longest = parts.iter().map(|(_, longest)| *longest).fold(0.0, f64::max);
+            let goes_back = parts.iter().map(|(ahead, _)| ahead).sum::<f64>() < 0.0;
             let next = if goes_back { 1.0 } else { 0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) };
             let beta = if goes_back { 0.0 } else { (momentum - 1.0) / next };
             momentum = next;
