@@ -1,3 +1,5 @@
+// Parts: linear, newton.
+//
 // Ends a round of conjugate gradients, if it is to end: its solution is added to the Newton step.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Where each vertex goes in this step: the position and its displacement, on the grid. Without displacements that are
 // bounded numbers it stays where it is.
 

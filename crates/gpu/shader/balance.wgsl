@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // The residuals of each body from those of its blocks, which follow each other: the length of the mean residual, and the
 // mean length.
 

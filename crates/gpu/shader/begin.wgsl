@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // The start of a call: aims are the targets, no edge pulls, nothing has swung back or waited. An edge that is too long already
 // may have nearly its length, and one that the target keeps within its limit may be a little longer. One thread per vertex and
 // edge.

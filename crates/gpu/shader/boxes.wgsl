@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Boxes of the elements of a tree: around the trust regions of their vertices, with their margins. They are integers,
 // so they contain exactly what they should.
 

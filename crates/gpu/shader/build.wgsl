@@ -1,3 +1,5 @@
+// Parts: types, weights, fixed.
+//
 // Contact rows, linearized at the positions, and the curvature of those that press: lambda |weight| / radius.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: linear, sum, rigid.
+//
 // Up to four coarse levels of the preconditioner at once: the motions of the eight groups of each domain under the forces on
 // them, and the force on the group that they form. The force on a group is the sum of those on its parts of the first of these
 // levels, 32 threads per group, so no level waits for the one below. One workgroup per domain, which go on with strides.

@@ -1,3 +1,5 @@
+// Parts: groups.
+//
 // Galerkin blocks of pairs of groups of groups: sums of those of their parts, with the motions of a part by that of
 // its group.
 

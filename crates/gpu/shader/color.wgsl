@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Colors the rows of each bucket and sorts them by color. A workgroup takes a bucket at a time; the buckets of a dispatch
 // share no vertex that moves.
 //

@@ -1,3 +1,5 @@
+// Parts: sum, newton.
+//
 // The combination of guesses with the least energy is where a linear solve starts: the minimum along the first one, then
 // along the part of the second one that is conjugate to the first. Its residual takes the place of the first guess.
 

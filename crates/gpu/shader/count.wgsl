@@ -1,3 +1,5 @@
+// Parts: types, scan, entries.
+//
 // First part of the places in a list, of candidates or of contact rows: where those of each row of the search, or of each
 // candidate, begin within a block of 256. Counts become sums in place.
 

@@ -1,3 +1,5 @@
+// Parts: linear, groups.
+//
 // Galerkin blocks P^T H P of pairs of groups, six rigid motions each, without springs. Rows of H multiply
 // differences, as in multiply.wgsl, so that motions of a group as a whole do not feel the stiffness within it.
 

@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Gives each vertex whose path leaves its trust region a new one, a ball about the middle of the path.
 
 struct Params {

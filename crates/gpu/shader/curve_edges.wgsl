@@ -1,3 +1,5 @@
+// Parts: types, fixed.
+//
 // Adds the curvature of edges with a multiplier, |f| / |e|, to the proximal weights of their vertices.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Decides after a step whether the submission goes on: not if the call has ended by its rule, if the next step makes
 // another number of sweeps, or if a buffer was too small, which is known after a search or within a step too. All
 // dispatches that follow are then left without workgroups. It keeps what the step came to.
@@ -17,11 +19,16 @@ struct Params {
     polish_stretch: f32,
     // 1: the steps of this submission polish.
     polishes: u32,
-    // What has gone before: 0: a step; 1: the search at the start of a call; 2: the list of the rows of a step.
+    // What has gone before.
     after: u32,
     // Dispatches that have arguments.
     dispatches: u32,
 }
+
+// A step; the search at the start of a call; the list of the rows of a step.
+const AFTER_STEP: u32 = 0u;
+const AFTER_SEARCH: u32 = 1u;
+const AFTER_ROWS: u32 = 2u;
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> control: Control;
@@ -94,7 +101,7 @@ fn keep_report(step: u32) {
 }
 
 fn decide() -> u32 {
-    if params.after != 0u {
+    if params.after != AFTER_STEP {
         return (1u + params.after) * atomicLoad(&control.overflow);
     }
     if atomicLoad(&control.overflow) != 0u {

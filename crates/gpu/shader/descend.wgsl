@@ -1,3 +1,5 @@
+// Parts: linear, sum, two_sums, rigid.
+//
 // A step of conjugate gradients along the direction p with the image q, and the fine part of the preconditioner:
 // block-Jacobi, and rigid motions of the groups of each patch. See linear/patches.rs. One workgroup per four patches, which
 // go on with strides.

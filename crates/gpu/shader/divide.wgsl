@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Divides the rows by bricks of space (bricks.rs): the bucket of each row, how many rows each bucket has, and the diagonal
 // of each row for the step that solves it.
 

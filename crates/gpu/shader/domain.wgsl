@@ -1,3 +1,5 @@
+// Parts: linear, groups.
+//
 // Inverses of the matrices of domains, eight groups of six rigid motions each, springs included; one workgroup per
 // domain.
 

@@ -1,3 +1,5 @@
+// Parts: types, weights, pair.
+//
 // Tells contacts from pairs that are only close, and sets the distance that the row of each pair asks for. Where two
 // surfaces touch, many pairs are close, but the distance has a minimum at few of them; a row along the normal of another
 // would block what slides past. A pair is a contact if its normal lies in the normal cones of the features that its closest

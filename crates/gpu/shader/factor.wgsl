@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // The factor of the coarse correction: the maximizer of the dual along the ray of all multipliers, within bounds. The sums
 // of the blocks, one per thread, are added by halves. Bounds and their reasons: `CoarseCorrection` (crates/twoway/src/coarse.rs).
 

@@ -1,3 +1,5 @@
+// Parts: terms.
+//
 // The gradient (R + K) d + c + sum of e' of the potential by each node: see potential/mod.rs. K multiplies differences of
 // d, which are formed in integers: a body that moves as a whole does not feel it.
 

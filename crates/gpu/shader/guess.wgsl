@@ -1,3 +1,5 @@
+// Parts: free.
+//
 // Guesses of a Newton step: the ways of free nodes from the iterate to the last target and to where inertia leads.
 
 struct Params {

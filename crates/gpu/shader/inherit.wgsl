@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // After a search: gives each candidate the state that it had before, or that of a new one.
 
 struct Params {

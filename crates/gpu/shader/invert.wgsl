@@ -1,3 +1,5 @@
+// Parts: linear.
+//
 // Block-Jacobi: the diagonal blocks, springs included, as products L D L^T. The rounding of an inverse is relative to its
 // largest entry, that of the softest direction; in stiff directions it would be larger than the entry itself.
 

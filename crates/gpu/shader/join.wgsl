@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Gives all vertices of a group its share, and starts with step sizes that no pair limits.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Before a search replaces the candidates: keeps them with their states, so that those that are found again inherit.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: types, weights, pair.
+//
 // Limits the step sizes of the vertices of each candidate: each side may close a share of the gap, so that each stays in
 // its own half-space.
 //

@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // The step size of each group: the smallest of its vertices.
 
 struct Params {

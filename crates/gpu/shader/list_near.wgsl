@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // The candidates that are within contact range, in the order of the candidates, as many as there is room for.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: linear, sum.
+//
 // The image q = H p of the search direction, and p . q by workgroup: see linear/matrix.rs for how H lies. Rows multiply
 // differences p_j - p_i, so that rounding of H acts on deformations alone. Rows of strands start from the image, which holds the
 // product of strand_product.wgsl, and add the sum of the row.

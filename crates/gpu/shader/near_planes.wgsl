@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Finds the half-spaces near each vertex, in two runs as traverse.wgsl.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: types, scan, entries.
+//
 // Third part of the places in a list: where each row of the search, or each candidate, begins in the list, and where the
 // last one ends.
 

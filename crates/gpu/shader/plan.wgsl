@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // How far each vertex may travel in this step, whatever its pairs: a share of its way to the target.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: linear, groups.
+//
 // What springs add to the matrices of domains, on and above the diagonal: sums over chunks of the springs that touch a
 // domain, one workgroup per chunk.
 

@@ -1,3 +1,5 @@
+// Parts: segments.
+//
 // r . z and r . r by block, of the residual r and the preconditioned one z. A window of nodes per workgroup.
 
 struct Params {

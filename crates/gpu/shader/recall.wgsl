@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // The displacements to the last aims, from where the vertices are now; an empty table of contacts.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: linear, sum, two_sums.
+//
 // The next search direction p = z + (rz' / rz) p. The motions of the coarse levels are added to z here: each group of a
 // patch moves with all groups above it. One workgroup per four patches, which go on with strides.
 

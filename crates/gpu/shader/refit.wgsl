@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Boxes of the nodes of a level of a tree: around those of their eight children.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: types, fixed.
+//
 // The displacement of each vertex without any multiplier: the minimum of m |u - u0|^2 + mu |u|^2, with u0 the way to the
 // target and mu the proximal weight, which is reset. Prescribed vertices have no inverse weight. They go all the way, but where
 // one has got no nearer for some steps, rows and edges take it to stay where it is: something holds it back, and nothing could

@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Subtracts from a row's target distance what its prescribed vertices lack. Where they end nearer than desired, the free
 // vertices of their side would have to make up for it. With a closest point near a prescribed vertex they have a short
 // lever, and would have to go far. It runs after release.wgsl, which says where prescribed vertices go.

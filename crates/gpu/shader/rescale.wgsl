@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // All multipliers times the factor of the coarse correction, and the displacements with them.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Resets what the stages of a step add to.
 
 struct Params {

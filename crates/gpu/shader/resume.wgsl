@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // After the first search of a call: gives candidates the multipliers that their pairs carry at its start.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: types, closest, weights, pair.
+//
 // Contact geometry of the candidates: a direction and a slab that certainly lies between both sides.
 //
 // For a unit vector n, min over side a of n.x - max over side b of n.x is at most the distance of the sides. Let

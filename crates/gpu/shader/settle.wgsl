@@ -1,7 +1,9 @@
+// Parts: linear, sum, largest, newton.
+//
 // What a linear solve knows of itself: its unit, its norms, and the norm at which it ends. One workgroup.
 
 struct Params {
-    // 0: the factor from the largest numbers of b; 1: the norm of b; 2: the norm at the start; 3: that after a round.
+    // What is settled.
     mode: u32,
     // Where partial sums begin, and their number.
     first: u32,
@@ -11,6 +13,12 @@ struct Params {
     own_tolerance: f32,
     min_scale: f32,
 }
+
+// The factor from the largest numbers of b; the norm of b; the norm at the start; that after a round.
+const FACTOR: u32 = 0u;
+const SCALE: u32 = 1u;
+const START: u32 = 2u;
+const ROUND: u32 = 3u;
 
 // Share of the goal at which iterations end, squared: the residual that is computed afterwards shall be below it as well.
 const MARGIN: f32 = 0.9025;
@@ -27,7 +35,7 @@ const MAX_REDUCTION: f32 = 1e-10;
 @compute @workgroup_size(256)
 fn main(@builtin(local_invocation_id) local: vec3<u32>) {
     let t = local.x;
-    if params.mode == 0u {
+    if params.mode == FACTOR {
         let largest = largest_of_parts(t, params.first, params.count, 1u);
         if t == 0u {
             let bits = bitcast<u32>(largest) & 0x7f800000u;
@@ -42,11 +50,11 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
     if t != 0u {
         return;
     }
-    if params.mode == 1u {
+    if params.mode == SCALE {
         solve.scale = norm;
         return;
     }
-    if params.mode == 2u {
+    if params.mode == START {
         // Zero times a square that is too large would be no number.
         var relative = solve.scale;
         if params.min_scale > 0.0 {

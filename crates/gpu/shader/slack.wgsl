@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Sums for the coarse correction, by block, in a fixed order: over rows and edges of the product of multiplier and slack,
 // and over vertices of |u - u'|^2 / w, with the displacement u, that without any multiplier u', and the inverse weight w.
 // The sums are those of `CoarseCorrection` on the CPU (crates/twoway/src/coarse.rs). One workgroup per block; its threads

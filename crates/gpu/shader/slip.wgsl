@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Friction of the contact rows: how far each contact has slipped since the start of the time step, and the multipliers that
 // its pair keeps, both across the normal. Coulomb's law at the level of positions: over a time step the slip is the
 // relative velocity at its end times the time step (implicit Euler), and the multiplier along it is at most the

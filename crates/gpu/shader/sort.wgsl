@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Sorts the rows by bucket; their order within a bucket comes later. The numbers of rows count down to zero, from where
 // the next step begins.
 

@@ -1,3 +1,5 @@
+// Parts: types, closest, weights, pair.
+//
 // Desired distance and minimum separation of candidates that are new, and the minimum separation of all for the forward
 // step.
 //

@@ -1,3 +1,5 @@
+// Parts: types, scan.
+//
 // Where the rows of each bucket begin and end in their order: sums of the numbers of rows. One workgroup: each thread has
 // buckets that follow each other.
 

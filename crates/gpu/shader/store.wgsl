@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Stores the multipliers of the rows with their candidates.
 
 struct Params {

@@ -1,3 +1,5 @@
+// Parts: elements, blocks, strand.
+//
 // Hessians of strands: the crate bowknot-dynamics, elements/strand.rs. What multiplies search directions is the second
 // derivative by w (strand_product.wgsl); blocks are for the preconditioner.
 

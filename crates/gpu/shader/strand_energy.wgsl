@@ -1,3 +1,5 @@
+// Parts: elements, parts, energies, strand.
+//
 // Energies of strands: the crate bowknot-dynamics, elements/strand.rs. From the change of w follows that of its length,
 // without cancellation.
 

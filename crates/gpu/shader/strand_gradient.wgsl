@@ -1,3 +1,5 @@
+// Parts: elements, gradients, strand.
+//
 // Gradients of strands: the crate bowknot-dynamics, elements/strand.rs.
 
 @group(0) @binding(1) var<storage, read> strands: array<Strand>;

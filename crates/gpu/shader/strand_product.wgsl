@@ -1,3 +1,5 @@
+// Parts: linear, strand.
+//
 // The product of the Hessians of strands with the search direction p, row by row. Edges are up to 10^7 times as stiff as
 // their inertia: the second derivative by w acts on differences of p along one direction, so that what rounding leaves is
 // along that direction too, where stiffness takes it up. Blocks of the matrix would leave it in all directions.

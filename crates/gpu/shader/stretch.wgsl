@@ -1,3 +1,5 @@
+// Parts: types, most.
+//
 // Largest ratio of an edge's length to its limit.
 
 struct Params {

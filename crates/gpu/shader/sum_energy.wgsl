@@ -1,3 +1,5 @@
+// Parts: parts.
+//
 // Sums the partial sums of energies: 64 of them to one, in a fixed order.
 
 @group(0) @binding(1) var<storage, read> addends: array<vec4<f32>>;

@@ -1,3 +1,5 @@
+// Parts: sum, largest.
+//
 // The results of `attempt` over all workgroups. One workgroup.
 
 struct Params {

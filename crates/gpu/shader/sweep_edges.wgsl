@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // A sweep over the edges of the clusters of a round, which share no vertex that moves. A workgroup takes a cluster at a
 // time, with the displacements of its vertices in its own memory, and waits between the colors of its edges: edges of
 // one color share no vertex that moves. The ball |x_a - x_b + u_a - u_b| <= L is convex, so nothing is linearized: each

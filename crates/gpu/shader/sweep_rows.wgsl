@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Sweeps over the contact rows of some buckets, which share no vertex that moves (bricks.rs). A workgroup takes a bucket at
 // a time, goes over it as often as it is told, and waits between its colors: rows of one color share no vertex that moves.
 // Vertices that do not move are read by many and written by none.

@@ -1,3 +1,5 @@
+// Parts: elements, blocks, strain, solid, eigen.
+//
 // Hessians of tetrahedra of constant strain without damping: the crate bowknot-dynamics, elements/tetrahedron.rs and
 // elements/solid_law.rs. F = u diag(s) v^T with rotations u and v; increments of F are d_ij along u_i v_j^T.
 // damped_tetrahedron.wgsl has those with damping.

@@ -1,3 +1,5 @@
+// Parts: elements, parts, energies, strain, logarithm.
+//
 // Energies of tetrahedra of constant strain: the crate bowknot-dynamics, elements/solid_law.rs and
 // elements/tetrahedron.rs. The change of St. Venant-Kirchhoff's energy and of the potential of damping, which are quadratic
 // in Green's strain, is the stress of the mean strain times the change of the strain. Stable neo-Hookean: with the changes

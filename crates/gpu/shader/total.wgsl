@@ -1,3 +1,5 @@
+// Parts: types, scan, entries.
+//
 // Second part of the places in a list: where those of each block begin, and how many there are. One workgroup: each thread has
 // blocks that follow each other, so there is one sum over the threads for any number of blocks.
 

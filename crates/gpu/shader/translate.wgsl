@@ -1,3 +1,5 @@
+// Parts: free.
+//
 // Adds a translation per block to the step of its free nodes.
 
 struct Params {

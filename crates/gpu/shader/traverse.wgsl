@@ -1,3 +1,5 @@
+// Parts: types.
+//
 // Finds the partners of elements: the elements of a tree whose boxes overlap theirs.
 //
 // It runs twice, since nobody knows before how many there are: first it counts those of each query, then, with the sums of

@@ -8,15 +8,20 @@ use std::cell::{Ref, RefCell, RefMut};
 pub(crate) struct Bound<'a> {
     buffers: &'a [&'a RefCell<Vec<u32>>],
     params: &'a [u32],
+    workgroups: usize,
 }
 
 impl<'a> Bound<'a> {
-    pub fn new(buffers: &'a [&'a RefCell<Vec<u32>>], params: &'a [u32]) -> Self {
-        Self { buffers, params }
+    pub fn new(buffers: &'a [&'a RefCell<Vec<u32>>], params: &'a [u32], workgroups: usize) -> Self {
+        Self { buffers, params, workgroups }
     }
 
     pub fn params<P: Pod>(&self) -> P {
         bytemuck::cast_slice(self.params)[0]
+    }
+
+    pub fn workgroups(&self) -> usize {
+        self.workgroups
     }
 
     pub fn read<T: Pod>(&self, binding: usize) -> Ref<'a, [T]> {

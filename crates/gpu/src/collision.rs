@@ -24,16 +24,15 @@ mod trees;
 
 use crate::adjacency::Adjacency;
 use crate::bricks::Bricks;
-use crate::cpu;
 use crate::edges::Edges;
 use crate::engine::{Engine, PhaseSeconds};
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
+use crate::kernels;
 use crate::layout::{Candidate, Control, NONE, Vertex};
 use crate::model::{self, Constraints, Lengths};
 use crate::parallel::collected;
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
 pub use carried::Carried;
@@ -41,6 +40,9 @@ use carried::CarriedList;
 use near_list::NearList;
 pub use stop::Stop;
 use trees::Trees;
+
+/// Largest growth of the multipliers in a call by coarse corrections.
+const MOST_GROWTH: f32 = 1e3;
 
 /// Why collisions cannot be computed on the device.
 #[derive(Debug, thiserror::Error)]
@@ -536,12 +538,12 @@ impl<E: Engine> Collision<E> {
             check_length("slip_start", slip_start.len(), self.sizes.vertices)?;
             recording.write(b.slip_start, &padded(&slip_start));
         }
-        recording.write(b.factor, &[1.0, cpu::factor::MOST_GROWTH]);
+        recording.write(b.factor, &[1.0, MOST_GROWTH]);
         recording.write(b.control, &[Control::of_new_call()]);
         recording.dispatch(
-            &stages::BEGIN,
+            &kernels::BEGIN,
             &[b.positions, b.targets, b.limits, b.aims, b.slip_start, b.swings, b.late, b.vertices],
-            cpu::begin::Params {
+            kernels::begin::Params {
                 vertices: self.sizes.vertices as u32,
                 limits: self.edges.len() as u32,
                 slips_from_here: u32::from(slips_from_here),
@@ -666,6 +668,8 @@ fn snapped(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, Collision
 mod edge_tests;
 #[cfg(test)]
 mod list_tests;
+#[cfg(test)]
+mod merge_tests;
 #[cfg(test)]
 mod row_tests;
 #[cfg(test)]

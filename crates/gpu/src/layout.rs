@@ -5,9 +5,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Colors of rows; rows that get none of them are swept one by one.
-pub const COLORS: usize = 128;
-
 /// No element, no group.
 pub const NONE: u32 = u32::MAX;
 
@@ -73,11 +70,6 @@ pub struct Late {
     pub smallest: f32,
     /// Steps without progress.
     pub idle_steps: u32,
-}
-
-impl Late {
-    /// Before the first step of a call.
-    pub const NEW: Self = Self { smallest: f32::MAX, idle_steps: 0 };
 }
 
 /// The place of an element in a tree.
@@ -202,6 +194,7 @@ pub struct PairState {
     pub padding: u32,
 }
 
+#[cfg(test)]
 impl PairState {
     /// A candidate that is new.
     pub const NEW: Self = Self {
@@ -244,7 +237,7 @@ pub struct Row {
     pub multiplier: f32,
     /// The candidate of the row.
     pub candidate: u32,
-    /// Its color in its bucket; [`COLORS`] if there is none for it.
+    /// Its color in its bucket; [`COLORS`](crate::kernels::color::COLORS) if there is none for it.
     pub color: u32,
     /// How far the contact has slipped since the start of the time step, across the normal.
     pub slip: [f32; 3],
@@ -406,6 +399,7 @@ pub struct Control {
 }
 
 impl Control {
+    #[cfg(test)]
     /// Words that a step begins with as zeros: all before the number of candidates.
     pub const RESET_WORDS: usize = 13;
 

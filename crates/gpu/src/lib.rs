@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `grid` | the grid of integers on which positions lie |
 //! | `layout` | data that host, kernels and twins share |
-//! | `stages`, `shader/`, `cpu` | the stages: kernels and their twins |
+//! | `stages`, `shader/`, `kernels` | kernels; their table and twins, which `cargo xtask twins` writes from them |
+//! | `wgsl` | what twins are written with: values of the shaders' language in Rust |
 //! | `bound` | what a twin sees of a dispatch |
 //! | `recording`, `engine` | lists of dispatches; a device or the twins run them |
 //! | `adapter` | the devices of this machine |
@@ -22,7 +23,6 @@ mod assembly;
 mod bound;
 mod bricks;
 mod collision;
-mod cpu;
 mod edges;
 mod engine;
 mod error;
@@ -36,7 +36,11 @@ mod potential;
 mod recording;
 mod stages;
 mod tree;
+#[rustfmt::skip]
+#[allow(warnings, clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)]
+mod kernels;
 mod two_way;
+mod wgsl;
 
 pub use bowknot_dynamics as dynamics;
 pub use bowknot_geometry as geometry;

@@ -8,6 +8,7 @@
 //! | `miri` | runs unit tests of the numerical crates under Miri |
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
 //! | `soak` | draws collision problems for minutes or hours, and judges every accepted step |
+//! | `twins` | writes the CPU twins of the kernels from their shaders |
 //! | `mutations` | makes mistakes in a copy of the code, and requires that the safety tests catch each |
 //!
 //! `cargo xtask help` prints the options.
@@ -25,6 +26,7 @@ mod nightly;
 mod pictures;
 mod readers;
 mod soak;
+mod twins;
 mod workspace;
 
 use std::process::ExitCode;
@@ -41,6 +43,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask soak --replay SEED \
 [--generated]
        cargo xtask mutations [NAME..]
+       cargo xtask twins
 
 check     run what CI runs, in named steps: format, \
 clippy, docs, wasm, a small run, its exports read back, tests; the fuzz targets if there
@@ -82,7 +85,10 @@ only, instead of mostly small pieces
 again
 mutations make the mistakes of tests/safety/mutations, all or those named, one at a time in a copy of \
 the workspace, and
-          require that the safety tests catch each; some minutes per mutation";
+          require that the safety tests catch each; some minutes per mutation
+twins     write crates/gpu/src/kernels, what \
+the CPU runs in place of each kernel, from crates/gpu/shader: after every change of a
+          shader";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -114,6 +120,7 @@ fn main() -> ExitCode {
         ["mutations", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             mutations::run(&workspace::root(), names)
         }
+        ["twins"] => twins::run(&workspace::root()),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS

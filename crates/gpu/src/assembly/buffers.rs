@@ -2,13 +2,13 @@
 
 use super::layout::{Curvature, ElementParams};
 use super::plan::Plan;
-use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
 use crate::linear::{Buffers, StrandHessian};
 use crate::parallel::collected;
 use crate::recording::{BufferId, Recording};
-use crate::stages::{self, Stage};
+use crate::stages::Stage;
 use bytemuck::Pod;
 use nalgebra::Matrix3;
 
@@ -175,7 +175,7 @@ impl AssemblyBuffers {
         self.record_elements(place, recording);
         let (nodes, entries) = (self.plan.nodes, self.plan.entries.len());
         recording.dispatch(
-            &stages::ASSEMBLE,
+            &kernels::ASSEMBLE,
             &[
                 self.entries.buffer,
                 self.sources,
@@ -184,13 +184,13 @@ impl AssemblyBuffers {
                 self.row_sums.buffer,
                 linear.words,
             ],
-            cpu::assemble::Params { entries: entries as u32, nodes: nodes as u32 },
+            kernels::assemble::Params { entries: entries as u32, nodes: nodes as u32 },
             entries + nodes,
         );
         recording.dispatch(
-            &stages::DIAGONAL,
+            &kernels::DIAGONAL,
             &[linear.slices, linear.words, self.diagonal],
-            cpu::diagonal::Params { nodes: nodes as u32 },
+            kernels::diagonal::Params { nodes: nodes as u32 },
             nodes,
         );
     }
@@ -202,11 +202,11 @@ impl AssemblyBuffers {
         let damped = if plan.has_damped_tetrahedra() { plan.tetrahedra.len() } else { 0 };
         let strands = tetrahedra + 6 * plan.tetrahedra.len();
         let kinds: [(&'static Stage, BufferId, usize, usize); 5] = [
-            (&stages::MEMBRANE, self.membranes, plan.membranes.len(), 0),
-            (&stages::BEND, self.bends, plan.bends.len(), bends),
-            (&stages::TETRAHEDRON, self.tetrahedra, plan.tetrahedra.len(), tetrahedra),
-            (&stages::DAMPED_TETRAHEDRON, self.tetrahedra, damped, tetrahedra),
-            (&stages::STRAND, self.strands, plan.strands.len(), strands),
+            (&kernels::MEMBRANE, self.membranes, plan.membranes.len(), 0),
+            (&kernels::BEND, self.bends, plan.bends.len(), bends),
+            (&kernels::TETRAHEDRON, self.tetrahedra, plan.tetrahedra.len(), tetrahedra),
+            (&kernels::DAMPED_TETRAHEDRON, self.tetrahedra, damped, tetrahedra),
+            (&kernels::STRAND, self.strands, plan.strands.len(), strands),
         ];
         for (stage, buffer, elements, first_block) in kinds {
             let bound = [buffer, place.positions, place.start, self.blocks, self.curvatures];

@@ -2,12 +2,11 @@
 
 use super::hierarchy::{Hierarchy, Touching};
 use super::layout::Frame;
-use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
 use crate::linear::{Buffers, CHILDREN, DOMAIN_WORDS, PATCH_SLOTS};
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use bowknot_dynamics::LinearSpring;
 
 /// The groups of a set of free nodes on an engine.
@@ -107,9 +106,9 @@ impl GroupBuffers {
             let (count, first) = level.map_or((1, self.hierarchy.frames - 1), |l| (l.groups, l.first_frame));
             let width = if index < 2 { [CHILDREN, PATCH_SLOTS][index] } else { 0 };
             recording.dispatch(
-                &stages::FRAME,
+                &kernels::FRAME,
                 &[positions, linear.slots, self.frames, linear.links],
-                cpu::frame::Params {
+                kernels::frame::Params {
                     count: count as u32,
                     first: first as u32,
                     first_part: parts.map_or(0, |level| level.first_frame as u32),
@@ -125,7 +124,7 @@ impl GroupBuffers {
             let (pairs, first) = (level.pairs as u32, level.first_pair as u32);
             if index < 2 {
                 recording.dispatch(
-                    &stages::COUPLE,
+                    &kernels::COUPLE,
                     &[
                         self.pairs,
                         linear.slices,
@@ -136,7 +135,7 @@ impl GroupBuffers {
                         self.frames,
                         self.couplings,
                     ],
-                    cpu::couple::Params {
+                    kernels::couple::Params {
                         pairs,
                         first,
                         width: level.width as u32,
@@ -147,29 +146,29 @@ impl GroupBuffers {
                 );
             } else {
                 recording.dispatch(
-                    &stages::COARSEN,
+                    &kernels::COARSEN,
                     &[self.sums, self.parts, self.frames, self.couplings],
-                    cpu::coarsen::Params { pairs, first, quantum },
-                    stages::COARSEN.workgroup * level.pairs,
+                    kernels::coarsen::Params { pairs, first, quantum },
+                    kernels::COARSEN.workgroup * level.pairs,
                 );
             }
         }
         let (first, chunks) = self.chunks;
         if springs && chunks > 0 {
             recording.dispatch(
-                &stages::PRESS,
+                &kernels::PRESS,
                 &[linear.springs, self.touching, self.places, positions, self.frames, self.pressed],
-                cpu::press::Params { chunks: chunks as u32, first: first as u32, quantum },
-                stages::PRESS.workgroup * chunks,
+                kernels::press::Params { chunks: chunks as u32, first: first as u32, quantum },
+                kernels::PRESS.workgroup * chunks,
             );
         }
         for (index, level) in levels.iter().enumerate() {
             let (inverses, first_inverse) =
                 if index == 0 { (linear.domains, 0) } else { (linear.coarse, coarse(level.first_domain)) };
             recording.dispatch(
-                &stages::DOMAIN,
+                &kernels::DOMAIN,
                 &[self.tables, self.couplings, self.touching, self.pressed, self.frames, inverses],
-                cpu::domain::Params {
+                kernels::domain::Params {
                     domains: level.domains as u32,
                     first: level.first_domain as u32,
                     first_inverse: first_inverse as u32,
@@ -177,7 +176,7 @@ impl GroupBuffers {
                     parts: level.groups as u32,
                     springs: u32::from(springs && chunks > 0),
                 },
-                stages::DOMAIN.workgroup * level.domains,
+                kernels::DOMAIN.workgroup * level.domains,
             );
         }
     }

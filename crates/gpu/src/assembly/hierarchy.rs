@@ -1,7 +1,6 @@
 //! Which groups of the preconditioner are coupled, on every level: what the host prepares for a set of free nodes.
 
-use super::layout::Part;
-use crate::cpu::press::Chunk;
+use super::layout::{Chunk, Part};
 use crate::layout::NONE;
 use crate::linear::{CHILDREN, PATCH_SLOTS, Patches};
 use bowknot_dynamics::{ElementModel, LinearSpring};

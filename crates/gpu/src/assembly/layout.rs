@@ -6,6 +6,17 @@
 
 use bytemuck::{Pod, Zeroable};
 
+/// Springs of a domain: their places in the list, the slots of a group of its level, its first group and the frame of that.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Chunk {
+    pub begin: u32,
+    pub end: u32,
+    pub width: u32,
+    pub group: u32,
+    pub frame: u32,
+}
+
 /// A triangle of constant strain.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

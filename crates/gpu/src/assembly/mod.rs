@@ -13,12 +13,11 @@ mod buffers;
 mod grid;
 mod groups;
 mod hierarchy;
-mod layout;
+pub(crate) mod layout;
 mod plan;
 
 pub(crate) use buffers::{AssemblyBuffers, AssemblyPlace, ElementBuffers, Written};
 pub(crate) use grid::StateGrid;
 pub(crate) use groups::GroupBuffers;
 pub(crate) use hierarchy::Hierarchy;
-pub(crate) use layout::{Bend, Curvature, ElementParams, Entry, Frame, Membrane, Part, Strand, Tetrahedron};
 pub(crate) use plan::Plan;

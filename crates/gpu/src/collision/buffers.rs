@@ -1,10 +1,9 @@
 //! The buffers of a scene on an engine, and how they grow: by a quarter more than is needed, but not beyond what the
 //! device binds.
 
-use crate::cpu::count::BLOCK;
-use crate::cpu::slack::MOST_BLOCKS;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
 use crate::layout::{
     Ball, Block, BlockSum, Bucket, Candidate, Control, EdgeCluster, EdgeLimit, Late, OldRow, PairFriction,
     PairState, Plane, Row, Separation, Vertex,
@@ -174,7 +173,7 @@ impl Buffers {
             reports: engine.buffer("reports", words::<Control>(1))?,
             arguments: engine.buffer("arguments", 0)?,
             starts: engine.buffer("starts", rows + 1)?,
-            blocks: engine.buffer("blocks", rows.div_ceil(BLOCK))?,
+            blocks: engine.buffer("blocks", rows.div_ceil(kernels::COUNT.workgroup))?,
             candidates: engine.buffer("candidates", words::<Candidate>(capacity))?,
             separations: engine.buffer("separations", words::<Separation>(capacity))?,
             states: engine.buffer("states of pairs", words::<PairState>(capacity))?,
@@ -194,7 +193,7 @@ impl Buffers {
             pushes: engine.buffer("pushes", 4 * vertices)?,
             late: engine.buffer("progress", words::<Late>(vertices))?,
             aims: engine.buffer("aims", 4 * vertices)?,
-            slack: engine.buffer("slack", 2 * MOST_BLOCKS)?,
+            slack: engine.buffer("slack", 2 * kernels::FACTOR.workgroup)?,
             factor: engine.buffer("factor", 2)?,
             contacts: engine.buffer("contacts", contact_places)?,
             contact_places,
@@ -289,7 +288,7 @@ impl PickBuffers {
     fn new(engine: &mut impl Engine, capacity: usize) -> Result<Self, GpuError> {
         Ok(Self {
             starts: engine.buffer("starts of rows", capacity + 1)?,
-            blocks: engine.buffer("blocks of rows", capacity.div_ceil(BLOCK))?,
+            blocks: engine.buffer("blocks of rows", capacity.div_ceil(kernels::COUNT.workgroup))?,
         })
     }
 

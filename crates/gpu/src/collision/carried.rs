@@ -1,13 +1,12 @@
 //! What pairs carry at the start of a call.
 
 use super::buffers::{Buffers, words};
-use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::grid::Grid;
+use crate::kernels;
 use crate::layout::{Candidate, CarriedState};
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use bowknot_geometry::Vector;
 
 /// What a pair carries at the start of a call.
@@ -87,15 +86,15 @@ impl CarriedList {
         Ok(Self { buffer, capacity, count: 0 })
     }
 
-    /// Gives new candidates what their pairs carry, if any does. [`stages::SPACE`] keeps it when it completes their states.
+    /// Gives new candidates what their pairs carry, if any does. [`kernels::SPACE`] keeps it when it completes their states.
     pub fn record(&self, b: &Buffers, recording: &mut Recording) {
         if self.count == 0 {
             return;
         }
         recording.dispatch(
-            &stages::RESUME,
+            &kernels::RESUME,
             &[self.buffer, b.candidates, b.states, b.control],
-            cpu::resume::Params { capacity: b.capacity as u32, carried: self.count as u32 },
+            kernels::resume::Params { capacity: b.capacity as u32, carried: self.count as u32 },
             b.capacity,
         );
     }

@@ -54,13 +54,18 @@ fn sweep(edges: &[[u32; 2]], vertices: u32) {
     recording.write(b[5], &weights);
     for only_apply in [0, 0, 1] {
         for round in divided.rounds() {
-            let params = cpu::sweep_edges::Params {
+            let params = kernels::sweep_edges::Params {
                 first: round.start as u32,
                 end: round.end as u32,
                 only_apply,
                 sweeps: if only_apply == 1 { 1 } else { SWEEPS },
             };
-            recording.dispatch(&stages::SWEEP_EDGES, &b, params, stages::SWEEP_EDGES.workgroup * round.len());
+            recording.dispatch(
+                &kernels::SWEEP_EDGES,
+                &b,
+                params,
+                kernels::SWEEP_EDGES.workgroup * round.len(),
+            );
         }
     }
     let read = engine.run(&recording, &[(b[4], words::<EdgeLimit>(limits.len()))]).expect("runs");

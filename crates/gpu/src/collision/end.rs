@@ -13,13 +13,12 @@
 use super::buffers::words;
 use super::record_search::ListPlaces;
 use super::{Collision, CollisionError, ContactRow, End};
-use crate::cpu;
-use crate::cpu::count::CONTACT_ROWS;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
+use crate::kernels::count::CONTACT_ROWS;
 use crate::layout::{Candidate, Control, Row};
 use crate::recording::Recording;
-use crate::stages;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 
@@ -71,9 +70,9 @@ impl<E: Engine> Collision<E> {
         self.record_separations(false, &mut recording);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
-            &stages::NEAR,
+            &kernels::NEAR,
             &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.picks.starts, b.control],
-            cpu::near::Params { capacity },
+            kernels::near::Params { capacity },
             self.buffers.capacity,
         );
         // Their number takes the place of that of the contact rows: the next step counts its rows anew.
@@ -92,9 +91,9 @@ impl<E: Engine> Collision<E> {
     fn record_gather(&self, recording: &mut Recording) {
         let b = &self.buffers;
         recording.dispatch(
-            &stages::LIST_NEAR,
+            &kernels::LIST_NEAR,
             &[b.picks.starts, b.candidates, self.near.buffer, b.control],
-            cpu::list_near::Params {
+            kernels::list_near::Params {
                 capacity: self.buffers.capacity as u32,
                 near_capacity: self.near.capacity as u32,
             },

@@ -1,12 +1,11 @@
 //! The stages of a step, in their order.
 
 use super::Collision;
-use crate::cpu;
-use crate::cpu::decide::{AFTER_SEARCH, AFTER_STEP};
 use crate::engine::Engine;
+use crate::kernels;
+use crate::kernels::decide::{AFTER_SEARCH, AFTER_STEP};
 use crate::layout::Block;
 use crate::recording::{Phase, Recording};
-use crate::stages;
 
 /// Longest travel of a vertex in a step, by how much a trust region is larger than half of the path, and its smallest
 /// radius, in local edge lengths; times the [factor](Collision) of the call.
@@ -47,9 +46,9 @@ impl<E: Engine> Collision<E> {
         let (b, settings) = (&self.buffers, &self.settings);
         let polishing = (settings.polish_distance, settings.polish_stretch);
         recording.dispatch(
-            &stages::DECIDE,
+            &kernels::DECIDE,
             &[b.control, b.reports, b.arguments],
-            cpu::decide::Params {
+            kernels::decide::Params {
                 polishes: u32::from(self.polishes),
                 after,
                 dispatches: dispatches as u32,
@@ -63,9 +62,9 @@ impl<E: Engine> Collision<E> {
     pub(super) fn record_restart(&self, first: bool, recording: &mut Recording) {
         let (b, groups) = (&self.buffers, self.sizes.groups);
         recording.dispatch(
-            &stages::RESTART,
+            &kernels::RESTART,
             &[b.group_caps, b.group_alphas, b.control],
-            cpu::restart::Params {
+            kernels::restart::Params {
                 groups: groups as u32,
                 again: u32::from(self.again),
                 first: u32::from(first),
@@ -79,15 +78,15 @@ impl<E: Engine> Collision<E> {
         recording.begin_phase(Phase::Forward);
         let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
         recording.dispatch(
-            &stages::PLAN,
+            &kernels::PLAN,
             &[b.positions, b.aims, b.vertices, b.paths, b.group_caps],
-            cpu::plan::Params { vertices, longest: self.travel * LONGEST_TRAVEL },
+            kernels::plan::Params { vertices, longest: self.travel * LONGEST_TRAVEL },
             self.sizes.vertices,
         );
         recording.dispatch(
-            &stages::JOIN,
+            &kernels::JOIN,
             &[b.vertices, b.group_caps, b.paths, b.alphas],
-            cpu::join::Params { vertices },
+            kernels::join::Params { vertices },
             self.sizes.vertices,
         );
         self.record_cover(recording);
@@ -98,9 +97,9 @@ impl<E: Engine> Collision<E> {
         recording.begin_phase(Phase::Search);
         let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
         recording.dispatch(
-            &stages::COVER,
+            &kernels::COVER,
             &[b.positions, b.paths, b.vertices, b.balls, b.control],
-            cpu::cover::Params {
+            kernels::cover::Params {
                 vertices,
                 all: u32::from(self.fresh || self.shrunk),
                 slack: self.travel * SLACK,
@@ -116,9 +115,9 @@ impl<E: Engine> Collision<E> {
         self.record_separations(after_search, recording);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
-            &stages::SPACE,
+            &kernels::SPACE,
             &[b.rest, b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, b.control],
-            cpu::space::Params {
+            kernels::space::Params {
                 capacity,
                 after_search: u32::from(after_search),
                 min_separation: self.lengths.min_separation,
@@ -138,9 +137,9 @@ impl<E: Engine> Collision<E> {
         recording.begin_phase(Phase::Evaluate);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
-            &stages::SEPARATE,
+            &kernels::SEPARATE,
             &[b.positions, b.edges, b.triangles, b.planes, b.candidates, b.separations, b.control],
-            cpu::separate::Params { capacity, after_search: u32::from(after_search) },
+            kernels::separate::Params { capacity, after_search: u32::from(after_search) },
             self.buffers.capacity,
         );
     }
@@ -151,41 +150,41 @@ impl<E: Engine> Collision<E> {
         let (b, vertices, capacity) =
             (&self.buffers, self.sizes.vertices as u32, self.buffers.capacity as u32);
         recording.dispatch(
-            &stages::LIMIT,
+            &kernels::LIMIT,
             &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.paths, b.alphas, b.control],
-            cpu::limit::Params { capacity, damping: self.lengths.damping },
+            kernels::limit::Params { capacity, damping: self.lengths.damping },
             self.buffers.capacity,
         );
         recording.dispatch(
-            &stages::LIMIT_GROUPS,
+            &kernels::LIMIT_GROUPS,
             &[b.vertices, b.alphas, b.group_alphas],
-            cpu::limit_groups::Params { vertices },
+            kernels::limit_groups::Params { vertices },
             self.sizes.vertices,
         );
         recording.dispatch(
-            &stages::ADVANCE,
+            &kernels::ADVANCE,
             &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control, b.late],
-            cpu::advance::Params { vertices },
+            kernels::advance::Params { vertices },
             self.sizes.vertices,
         );
         recording.dispatch(
-            &stages::STRETCH,
+            &kernels::STRETCH,
             &[b.positions, b.limits, b.control],
-            cpu::stretch::Params { edges: self.edges.len() as u32 },
+            kernels::stretch::Params { edges: self.edges.len() as u32 },
             self.edges.len(),
         );
         let blocks = self.sizes.blocks as u32;
         recording.dispatch(
-            &stages::RESIDUALS,
+            &kernels::RESIDUALS,
             &[b.vertex_blocks, b.positions, b.aims, b.displacements, b.vertices, b.block_sums],
-            cpu::residuals::Params { blocks },
+            kernels::residuals::Params { blocks },
             Block::MOST * self.sizes.blocks,
         );
         recording.dispatch(
-            &stages::BALANCE,
+            &kernels::BALANCE,
             &[b.vertex_blocks, b.block_sums, b.control],
-            cpu::balance::Params { blocks },
-            stages::BALANCE.workgroup * self.sizes.blocks,
+            kernels::balance::Params { blocks },
+            kernels::BALANCE.workgroup * self.sizes.blocks,
         );
     }
 }

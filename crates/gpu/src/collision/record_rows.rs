@@ -2,12 +2,11 @@
 
 use super::Collision;
 use super::record_search::ListPlaces;
-use crate::cpu;
-use crate::cpu::count::CONTACT_ROWS;
-use crate::cpu::decide::AFTER_ROWS;
 use crate::engine::Engine;
+use crate::kernels;
+use crate::kernels::count::CONTACT_ROWS;
+use crate::kernels::decide::AFTER_ROWS;
 use crate::recording::{Phase, Recording};
-use crate::stages;
 
 /// Largest number of coarse corrections in a backward step, as on the CPU.
 const MAX_COARSE_CORRECTIONS: usize = 64;
@@ -19,9 +18,9 @@ impl<E: Engine> Collision<E> {
         let (vertices, capacity) = (self.sizes.vertices, self.buffers.capacity as u32);
         let row_capacity = self.buffers.row_capacity as u32;
         recording.dispatch(
-            &stages::RECALL,
+            &kernels::RECALL,
             &[b.positions, b.aims, b.displacements, b.contacts],
-            cpu::recall::Params { vertices: vertices as u32, table: b.contact_places as u32 },
+            kernels::recall::Params { vertices: vertices as u32, table: b.contact_places as u32 },
             vertices.max(b.contact_places),
         );
         self.record_geometry(false, recording);
@@ -29,7 +28,7 @@ impl<E: Engine> Collision<E> {
         if self.settings.contacts_only {
             let [edges_first, triangles_first] = self.adjacency_starts;
             recording.dispatch(
-                &stages::FACING,
+                &kernels::FACING,
                 &[
                     b.positions,
                     b.edges,
@@ -40,12 +39,12 @@ impl<E: Engine> Collision<E> {
                     b.separations,
                     b.control,
                 ],
-                cpu::facing::Params { capacity, edges_first, triangles_first },
+                kernels::facing::Params { capacity, edges_first, triangles_first },
                 self.buffers.capacity,
             );
         }
         recording.dispatch(
-            &stages::PICK,
+            &kernels::PICK,
             &[
                 b.displacements,
                 b.edges,
@@ -56,7 +55,7 @@ impl<E: Engine> Collision<E> {
                 b.picks.starts,
                 b.control,
             ],
-            cpu::pick::Params { capacity, threshold: self.settings.active as f32 },
+            kernels::pick::Params { capacity, threshold: self.settings.active as f32 },
             self.buffers.capacity,
         );
         self.record_merging(recording);
@@ -71,20 +70,23 @@ impl<E: Engine> Collision<E> {
         // Without room for all rows the step ends here, and is made again.
         self.record_decision(AFTER_ROWS, dispatches, recording);
         recording.dispatch(
-            &stages::LIST,
+            &kernels::LIST,
             &[b.edges, b.triangles, b.picks.starts, b.candidates, r.rows, r.pairs, b.control],
-            cpu::list::Params { capacity },
+            kernels::list::Params { capacity },
             self.buffers.capacity,
         );
         recording.dispatch(
-            &stages::BUILD,
+            &kernels::BUILD,
             &[b.vertices, b.candidates, b.separations, b.states, r.rows, b.proximal, b.control],
-            cpu::build::Params { capacity: row_capacity, strength: self.settings.contact_proximal as f32 },
+            kernels::build::Params {
+                capacity: row_capacity,
+                strength: self.settings.contact_proximal as f32,
+            },
             self.buffers.row_capacity,
         );
         if self.frictional {
             recording.dispatch(
-                &stages::SLIP,
+                &kernels::SLIP,
                 &[
                     b.positions,
                     b.slip_start,
@@ -95,7 +97,7 @@ impl<E: Engine> Collision<E> {
                     r.rows,
                     b.control,
                 ],
-                cpu::slip::Params {
+                kernels::slip::Params {
                     capacity: row_capacity,
                     pair_frictions: self.sizes.pair_frictions as u32,
                     first_half_space: vertices as u32,
@@ -114,7 +116,7 @@ impl<E: Engine> Collision<E> {
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         let mask = b.contact_places as u32 - 1;
         recording.dispatch(
-            &stages::ENLIST,
+            &kernels::ENLIST,
             &[
                 b.edges,
                 b.triangles,
@@ -125,11 +127,11 @@ impl<E: Engine> Collision<E> {
                 b.contacts,
                 b.control,
             ],
-            cpu::enlist::Params { capacity, mask },
+            kernels::enlist::Params { capacity, mask },
             self.buffers.capacity,
         );
         recording.dispatch(
-            &stages::MERGE,
+            &kernels::MERGE,
             &[
                 b.edges,
                 b.triangles,
@@ -140,7 +142,7 @@ impl<E: Engine> Collision<E> {
                 b.picks.starts,
                 b.control,
             ],
-            cpu::merge::Params { capacity, mask },
+            kernels::merge::Params { capacity, mask },
             self.buffers.capacity,
         );
     }
@@ -149,27 +151,27 @@ impl<E: Engine> Collision<E> {
     fn record_colors(&self, recording: &mut Recording) {
         let (b, r, capacity) = (&self.buffers, &self.buffers.rows, self.buffers.row_capacity as u32);
         recording.dispatch(
-            &stages::DIVIDE,
+            &kernels::DIVIDE,
             &[b.positions, b.displacements, r.rows, r.tally, b.control],
-            cpu::divide::Params { capacity, shift: self.bricks.shift, buckets: self.bricks.buckets },
+            kernels::divide::Params { capacity, shift: self.bricks.shift, buckets: self.bricks.buckets },
             self.buffers.row_capacity,
         );
         recording.dispatch(
-            &stages::START_BUCKETS,
+            &kernels::START_BUCKETS,
             &[r.tally, r.buckets],
-            cpu::start_buckets::Params { buckets: self.bricks.count() as u32 },
+            kernels::start_buckets::Params { buckets: self.bricks.count() as u32 },
             1,
         );
         recording.dispatch(
-            &stages::SORT,
+            &kernels::SORT,
             &[r.rows, r.buckets, r.tally, r.order, b.control],
-            cpu::sort::Params { capacity },
+            kernels::sort::Params { capacity },
             self.buffers.row_capacity,
         );
         // One round after the other, for buckets of two rounds may share vertices.
         for round in self.bricks.rounds() {
             recording.dispatch(
-                &stages::COLOR,
+                &kernels::COLOR,
                 &[
                     b.displacements,
                     r.rows,
@@ -180,8 +182,8 @@ impl<E: Engine> Collision<E> {
                     r.order,
                     r.color_ends,
                 ],
-                cpu::color::Params { first: round.start, end: round.end, capacity },
-                stages::COLOR.workgroup * round.len(),
+                kernels::color::Params { first: round.start, end: round.end, capacity },
+                kernels::COLOR.workgroup * round.len(),
             );
         }
     }
@@ -191,15 +193,15 @@ impl<E: Engine> Collision<E> {
         let (b, r) = (&self.buffers, &self.buffers.rows);
         for round in self.bricks.rounds() {
             recording.dispatch(
-                &stages::SWEEP_ROWS,
+                &kernels::SWEEP_ROWS,
                 &[r.order, r.buckets, r.color_ends, r.rows, b.displacements, b.pushes],
-                cpu::sweep_rows::Params {
+                kernels::sweep_rows::Params {
                     first: round.start,
                     end: round.end,
                     only_apply: u32::from(only_apply),
                     sweeps: if only_apply { 1 } else { self.settings.bucket_sweeps as u32 },
                 },
-                stages::SWEEP_ROWS.workgroup * round.len(),
+                kernels::SWEEP_ROWS.workgroup * round.len(),
             );
         }
     }
@@ -209,15 +211,15 @@ impl<E: Engine> Collision<E> {
         let b = &self.buffers;
         for round in self.edges.rounds() {
             recording.dispatch(
-                &stages::SWEEP_EDGES,
+                &kernels::SWEEP_EDGES,
                 &[b.positions, b.clusters, b.cluster_vertices, b.cluster_colors, b.limits, b.displacements],
-                cpu::sweep_edges::Params {
+                kernels::sweep_edges::Params {
                     first: round.start as u32,
                     end: round.end as u32,
                     only_apply: u32::from(only_apply),
                     sweeps: if only_apply { 1 } else { self.settings.cluster_sweeps as u32 },
                 },
-                stages::SWEEP_EDGES.workgroup * round.len(),
+                kernels::SWEEP_EDGES.workgroup * round.len(),
             );
         }
     }
@@ -228,23 +230,23 @@ impl<E: Engine> Collision<E> {
         let [vertices, limits] = [self.sizes.vertices, self.edges.len()].map(|count| count as u32);
         let capacity = self.buffers.row_capacity as u32;
         let threads = self.buffers.row_capacity.max(self.sizes.vertices).max(self.edges.len());
-        let blocks = threads.div_ceil(cpu::slack::BLOCK).min(cpu::slack::MOST_BLOCKS);
+        let blocks = threads.div_ceil(kernels::SLACK.workgroup).min(kernels::FACTOR.workgroup);
         recording.dispatch(
-            &stages::SLACK,
+            &kernels::SLACK,
             &[r.rows, b.limits, b.positions, b.targets, b.vertices, b.displacements, b.control, b.slack],
-            cpu::slack::Params { blocks: blocks as u32, capacity, limits, vertices },
-            blocks * cpu::slack::BLOCK,
+            kernels::slack::Params { blocks: blocks as u32, capacity, limits, vertices },
+            blocks * kernels::SLACK.workgroup,
         );
         recording.dispatch(
-            &stages::FACTOR,
+            &kernels::FACTOR,
             &[b.slack, b.factor],
-            cpu::factor::Params { blocks: blocks as u32 },
+            kernels::factor::Params { blocks: blocks as u32 },
             1,
         );
         recording.dispatch(
-            &stages::RESCALE,
+            &kernels::RESCALE,
             &[b.factor, r.rows, b.limits, b.positions, b.targets, b.vertices, b.displacements, b.control],
-            cpu::rescale::Params { capacity, limits, vertices },
+            kernels::rescale::Params { capacity, limits, vertices },
             threads,
         );
     }
@@ -254,26 +256,26 @@ impl<E: Engine> Collision<E> {
         let (b, r) = (&self.buffers, &self.buffers.rows);
         let vertices = self.sizes.vertices as u32;
         recording.dispatch(
-            &stages::CURVE_EDGES,
+            &kernels::CURVE_EDGES,
             &[b.positions, b.limits, b.proximal],
-            cpu::curve_edges::Params {
+            kernels::curve_edges::Params {
                 edges: self.edges.len() as u32,
                 strength: self.settings.edge_proximal as f32,
             },
             self.edges.len(),
         );
         recording.dispatch(
-            &stages::RELEASE,
+            &kernels::RELEASE,
             &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, b.swings, b.late],
-            cpu::release::Params { vertices },
+            kernels::release::Params { vertices },
             self.sizes.vertices,
         );
         if self.has_pins {
             let capacity = self.buffers.row_capacity as u32;
             recording.dispatch(
-                &stages::RELIEVE,
+                &kernels::RELIEVE,
                 &[b.positions, b.displacements, b.candidates, b.separations, r.rows, b.control],
-                cpu::relieve::Params { capacity },
+                kernels::relieve::Params { capacity },
                 self.buffers.row_capacity,
             );
         }
@@ -289,15 +291,15 @@ impl<E: Engine> Collision<E> {
             self.record_edge_sweep(sweep == 0, recording);
         }
         recording.dispatch(
-            &stages::STORE,
+            &kernels::STORE,
             &[r.rows, b.states, b.control],
-            cpu::store::Params { capacity: self.buffers.row_capacity as u32 },
+            kernels::store::Params { capacity: self.buffers.row_capacity as u32 },
             self.buffers.row_capacity,
         );
         recording.dispatch(
-            &stages::AIM,
+            &kernels::AIM,
             &[b.positions, b.targets, b.displacements, b.aims, b.swings],
-            cpu::aim::Params { vertices, growth: self.settings.proximal_growth as f32 },
+            kernels::aim::Params { vertices, growth: self.settings.proximal_growth as f32 },
             self.sizes.vertices,
         );
     }

@@ -2,12 +2,11 @@
 
 use super::Collision;
 use super::trees::DeviceTree;
-use crate::cpu;
-use crate::cpu::count::CANDIDATES;
 use crate::engine::Engine;
+use crate::kernels;
+use crate::kernels::count::CANDIDATES;
 use crate::layout::Kind;
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 
 /// A list whose entries get their places: counts by row, which become where each row begins, and sums by block.
 pub(super) struct ListPlaces {
@@ -33,9 +32,9 @@ impl<E: Engine> Collision<E> {
         self.record_places(&places, recording);
         self.record_finds(true, recording);
         recording.dispatch(
-            &stages::INHERIT,
+            &kernels::INHERIT,
             &[b.starts, b.candidates, b.old_rows, b.old_elements, b.old_states, b.states, b.control],
-            cpu::inherit::Params { rows, capacity },
+            kernels::inherit::Params { rows, capacity },
             self.sizes.rows,
         );
     }
@@ -44,13 +43,13 @@ impl<E: Engine> Collision<E> {
     pub(super) fn record_places(&self, places: &ListPlaces, recording: &mut Recording) {
         let &ListPlaces { starts, blocks, rows, capacity, list } = places;
         let control = self.buffers.control;
-        let params = cpu::count::Params { rows, list };
-        recording.dispatch(&stages::COUNT, &[starts, blocks, control], params, rows as usize);
-        let block_count = rows.div_ceil(cpu::count::BLOCK as u32);
-        let params = cpu::total::Params { blocks: block_count, capacity, list };
-        recording.dispatch(&stages::TOTAL, &[blocks, control], params, 1);
-        let params = cpu::place::Params { rows, list };
-        recording.dispatch(&stages::PLACE, &[blocks, starts, control], params, rows as usize);
+        let params = kernels::count::Params { rows, list };
+        recording.dispatch(&kernels::COUNT, &[starts, blocks, control], params, rows as usize);
+        let block_count = rows.div_ceil(kernels::COUNT.workgroup as u32);
+        let params = kernels::total::Params { blocks: block_count, capacity, list };
+        recording.dispatch(&kernels::TOTAL, &[blocks, control], params, 1);
+        let params = kernels::place::Params { rows, list };
+        recording.dispatch(&kernels::PLACE, &[blocks, starts, control], params, rows as usize);
     }
 
     /// Counts the partners of all elements, or lists them.
@@ -63,7 +62,7 @@ impl<E: Engine> Collision<E> {
         }
         if self.sizes.planes > 0 {
             let queries = &self.trees.surface;
-            let params = cpu::near_planes::Params {
+            let params = kernels::near_planes::Params {
                 queries: queries.tree.slots.len() as u32,
                 planes: self.sizes.planes as u32,
                 first_row: row as u32,
@@ -71,7 +70,7 @@ impl<E: Engine> Collision<E> {
                 capacity: b.capacity as u32,
             };
             let buffers = [queries.slots, b.planes, b.balls, b.vertices, b.starts, b.candidates, b.control];
-            recording.dispatch(&stages::NEAR_PLANES, &buffers, params, queries.tree.slots.len());
+            recording.dispatch(&kernels::NEAR_PLANES, &buffers, params, queries.tree.slots.len());
         }
     }
 
@@ -83,9 +82,9 @@ impl<E: Engine> Collision<E> {
         }
         let (b, rows) = (&self.buffers, self.sizes.rows);
         recording.dispatch(
-            &stages::KEEP,
+            &kernels::KEEP,
             &[b.starts, b.candidates, b.states, b.old_rows, b.old_elements, b.old_states, b.control],
-            cpu::keep::Params { rows: rows as u32, capacity: self.buffers.capacity as u32 },
+            kernels::keep::Params { rows: rows as u32, capacity: self.buffers.capacity as u32 },
             rows,
         );
     }
@@ -104,7 +103,7 @@ impl<E: Engine> Collision<E> {
         for (k, level) in targets.tree.levels.iter().enumerate() {
             level_first[k / 4][k % 4] = level.first as u32;
         }
-        let params = cpu::traverse::Params {
+        let params = kernels::traverse::Params {
             queries: queries.tree.slots.len() as u32,
             count: queries.tree.vertex_count as u32,
             kind: kind as u32,
@@ -125,6 +124,6 @@ impl<E: Engine> Collision<E> {
             b.candidates,
             b.control,
         ];
-        recording.dispatch(&stages::TRAVERSE, &buffers, params, queries.tree.slots.len());
+        recording.dispatch(&kernels::TRAVERSE, &buffers, params, queries.tree.slots.len());
     }
 }

@@ -4,7 +4,8 @@
 use super::*;
 use crate::TwinEngine;
 use crate::bricks::LATTICES;
-use crate::layout::{Bucket, COLORS, Row};
+use crate::kernels::color::COLORS;
+use crate::layout::{Bucket, Row};
 use bowknot_geometry::{BodyFilter, Topology};
 use std::collections::{HashMap, HashSet};
 
@@ -164,7 +165,7 @@ fn rows_that_are_swept_at_the_same_time_share_no_vertex_that_moves() {
                     }
                 }
                 assert_eq!(bucket.most, parts.values().copied().max().unwrap_or(0));
-                assert!(others.iter().all(|row| all.rows[*row as usize].color as usize == COLORS));
+                assert!(others.iter().all(|row| all.rows[*row as usize].color == COLORS));
                 uncolored += others.len();
                 for &row in &all.order[bucket.first as usize..bucket.end as usize] {
                     for v in all.moving(&scene, row) {

@@ -4,11 +4,10 @@
 
 use super::buffers::words;
 use crate::adapter::Adapter;
-use crate::cpu;
 use crate::engine::{DeviceEngine, Engine};
+use crate::kernels;
 use crate::layout::{Candidate, Control, Kind, Plane, Separation};
 use crate::recording::Recording;
-use crate::stages;
 
 /// Pairs of each kind, and the vertices of one.
 const PAIRS: u32 = 20_000;
@@ -64,8 +63,8 @@ fn slabs_of_a_device_lie_between_both_sides() {
     recording.write(c, &candidates);
     let kept = Control { candidates: count as u32, changed: 1, ..bytemuck::Zeroable::zeroed() };
     recording.write(control, &[kept]);
-    let params = cpu::separate::Params { capacity: count as u32, after_search: 0 };
-    recording.dispatch(&stages::SEPARATE, &[x, e, t, planes, c, s, control], params, count);
+    let params = kernels::separate::Params { capacity: count as u32, after_search: 0 };
+    recording.dispatch(&kernels::SEPARATE, &[x, e, t, planes, c, s, control], params, count);
     let read = engine.run(&recording, &[(s, words::<Separation>(count))]).unwrap();
     let separations: &[Separation] = bytemuck::cast_slice(&read[0]);
     let mut certified = 0;

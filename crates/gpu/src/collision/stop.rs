@@ -1,7 +1,7 @@
 //! When a call ends, as the device decides it.
 
-use crate::cpu::decide;
 use crate::grid::Grid;
+use crate::kernels::decide;
 
 /// When a call ends: of the steps of a submission, those after its end are not made. A state meets the rule if it meets
 /// all of its conditions. The host, which looks at the same numbers, may end a call after any other submission.

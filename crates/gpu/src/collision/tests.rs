@@ -284,7 +284,7 @@ impl Room {
         replace(&mut b.old_elements, self.old);
         replace(&mut b.old_states, words::<PairState>(self.old));
         replace(&mut b.picks.starts, self.picks + 1);
-        replace(&mut b.picks.blocks, self.picks.div_ceil(cpu::count::BLOCK));
+        replace(&mut b.picks.blocks, self.picks.div_ceil(kernels::COUNT.workgroup));
         replace(&mut b.rows.rows, words::<Row>(self.rows));
         replace(&mut b.rows.pairs, words::<Candidate>(self.rows));
         replace(&mut b.rows.order, self.rows);

@@ -1,13 +1,12 @@
 //! The trees of the search on the device, and which of them are searched for which kind of pair.
 
 use super::buffers::{Buffers, words};
-use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::grid::GridPoint;
+use crate::kernels;
 use crate::layout::{Kind, NodeBox, Slot};
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use crate::tree::Tree;
 use bowknot_geometry::Topology;
 
@@ -131,17 +130,17 @@ impl DeviceTree {
     pub fn record_fit(&self, b: &Buffers, recording: &mut Recording) {
         let slots = self.tree.slots.len();
         recording.dispatch(
-            &stages::BOXES,
+            &kernels::BOXES,
             &[self.slots, b.balls, b.vertices, self.boxes, b.control],
-            cpu::boxes::Params { slots: slots as u32, count: self.tree.vertex_count as u32 },
+            kernels::boxes::Params { slots: slots as u32, count: self.tree.vertex_count as u32 },
             slots,
         );
         for levels in self.tree.levels.windows(2) {
             let [below, level] = [levels[0], levels[1]];
             recording.dispatch(
-                &stages::REFIT,
+                &kernels::REFIT,
                 &[self.boxes, b.control],
-                cpu::refit::Params {
+                kernels::refit::Params {
                     first: level.first as u32,
                     nodes: level.nodes as u32,
                     first_child: below.first as u32,

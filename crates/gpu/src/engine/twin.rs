@@ -46,7 +46,7 @@ impl TwinEngine {
         }
         let buffers: Vec<&RefCell<Vec<u32>>> =
             dispatch.buffers.iter().map(|buffer| &self.buffers[buffer.0 as usize]).collect();
-        (dispatch.stage.twin)(Bound::new(&buffers, &dispatch.params));
+        (dispatch.stage.twin)(Bound::new(&buffers, &dispatch.params, dispatch.workgroups()));
     }
 
     pub(super) fn write(&self, buffer: BufferId, words: &[u32]) {

@@ -7,11 +7,10 @@ use super::patches::Patches;
 use super::record::Recorder;
 use super::solver::ConjugateGradients;
 use crate::assembly::{AssemblyBuffers, Plan};
-use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use bowknot_dynamics::{AssemblySprings, ElementModel};
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
@@ -110,9 +109,9 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         let slots = PATCH_SLOTS * sizes.patches;
         set.groups.write_springs(&mut self.engine, springs.springs, recording)?;
         recording.dispatch(
-            &stages::INVERT,
+            &kernels::INVERT,
             &[assembly.buffers.diagonal, buffers.springs, buffers.spring_words, buffers.slots],
-            cpu::invert::Params { slots: slots as u32, springs: sizes.springs as u32 },
+            kernels::invert::Params { slots: slots as u32, springs: sizes.springs as u32 },
             slots,
         );
         set.groups.record(buffers, positions, sizes.springs > 0, quantum as f32, recording);

@@ -3,9 +3,9 @@
 use super::layout::{CHILDREN, DOMAIN_WORDS, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress};
 use super::matrix::PackedMatrix;
 use super::patches::Patches;
-use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::linear::{MOST_WORKGROUPS, THREADS};
 use crate::recording::BufferId;
 use bytemuck::Pod;
 

@@ -1,7 +1,14 @@
 //! The data of a linear solve that host, kernels and twins share. A test compares every struct with what the shaders
 //! declare (`stages/tests.rs`).
 
+use crate::kernels;
 use bytemuck::{Pod, Zeroable};
+
+/// Threads of a workgroup that adds up sums.
+pub const THREADS: usize = kernels::descend::THREADS as usize;
+
+/// Most workgroups that write partial sums: the workgroups of the next stage each add them all, one per thread.
+pub const MOST_WORKGROUPS: usize = THREADS;
 
 /// Slots of a patch, each for a node: eight groups of eight slots.
 pub const PATCH_SLOTS: usize = 64;

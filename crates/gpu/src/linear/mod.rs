@@ -13,7 +13,7 @@
 mod assembled;
 mod assembly;
 mod buffers;
-mod layout;
+pub(crate) mod layout;
 mod matrix;
 mod patches;
 mod record;
@@ -21,10 +21,8 @@ mod solver;
 
 pub(crate) use assembled::symmetric_blocks;
 pub(crate) use buffers::Buffers;
-pub(crate) use layout::{
-    CHILDREN, DOMAIN_UNKNOWNS, DOMAIN_WORDS, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress, Spring,
-};
-pub(crate) use matrix::{BLOCK_WORDS, Columns, PackedMatrix, SLICE};
+pub(crate) use layout::{CHILDREN, DOMAIN_WORDS, MOST_WORKGROUPS, PATCH_SLOTS, Progress, THREADS};
+pub(crate) use matrix::{Columns, PackedMatrix, SLICE};
 pub(crate) use patches::Patches;
 pub(crate) use record::{Recorder, StrandHessian};
 pub use solver::ConjugateGradients;

@@ -2,10 +2,9 @@
 
 use super::buffers::{Buffers, MOST_COARSE_WORKGROUPS, Sizes};
 use super::layout::{CHILDREN, Progress};
-use crate::cpu;
-use crate::cpu::sum::THREADS;
+use crate::kernels;
+use crate::linear::THREADS;
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 
 /// Coarse levels of a dispatch: a group is the sum of at most 512 parts then, by 32 threads.
 const CLIMBED: usize = 4;
@@ -54,16 +53,16 @@ impl Recorder {
         let (b, s) = (&self.buffers, &self.sizes);
         if let Some(strands) = self.strands {
             recording.dispatch(
-                &stages::STRAND_PRODUCT,
+                &kernels::STRAND_PRODUCT,
                 &[strands.strands, strands.curvatures, strands.rows, b.direction, b.image, b.progress],
-                cpu::strand_product::Params { rows: strands.count as u32 },
+                kernels::strand_product::Params { rows: strands.count as u32 },
                 strands.count,
             );
         }
         recording.dispatch(
-            &stages::MULTIPLY,
+            &kernels::MULTIPLY,
             &[b.slices, b.words, b.spring_words, b.springs, b.direction, b.image, b.sums, b.progress],
-            cpu::multiply::Params {
+            kernels::multiply::Params {
                 nodes: s.nodes as u32,
                 springs: s.springs as u32,
                 workgroups: s.multiplying() as u32,
@@ -97,9 +96,9 @@ impl Recorder {
         let (workgroups, norms) = (s.stepping() as u32, self.norm_count() as u32);
         let (all_present, all_next) = (present, next);
         recording.dispatch(
-            &stages::DESCEND,
+            &kernels::DESCEND,
             &[b.slots, b.domains, b.direction, b.image, b.solution, b.forces, b.sums, b.progress],
-            cpu::descend::Params {
+            kernels::descend::Params {
                 nodes: s.nodes as u32,
                 patches,
                 grouped,
@@ -115,7 +114,7 @@ impl Recorder {
         (present, next) = (present + workgroups, next + workgroups);
         let firsts = s.first_groups();
         for (first_level, levels) in (0..).step_by(CLIMBED).zip(s.levels.chunks(CLIMBED)) {
-            let mut params = cpu::climb::Params {
+            let mut params = kernels::climb::Params {
                 groups: [0; 4],
                 firsts: [0; 4],
                 first_domains: [u32::MAX; 4],
@@ -132,7 +131,7 @@ impl Recorder {
                 params.first_domains[rise] = firsts[first_level + rise + 1] - grouped;
             }
             recording.dispatch(
-                &stages::CLIMB,
+                &kernels::CLIMB,
                 &[b.coarse, b.links, b.forces, b.motions, b.sums, b.progress],
                 params,
                 THREADS * params.workgroups as usize,
@@ -140,9 +139,9 @@ impl Recorder {
             (present, next) = (present + params.workgroups, next + params.workgroups);
         }
         recording.dispatch(
-            &stages::REDIRECT,
+            &kernels::REDIRECT,
             &[b.slots, b.links, b.motions, b.image, b.direction, b.sums, b.progress],
-            cpu::redirect::Params {
+            kernels::redirect::Params {
                 patches,
                 grouped,
                 start,
@@ -151,7 +150,7 @@ impl Recorder {
                 norms,
                 present: all_present,
                 next: all_next,
-                firsts,
+                firsts: bytemuck::cast(firsts),
             },
             THREADS * s.stepping(),
         );

@@ -3,12 +3,11 @@
 use super::layout::Solve;
 use super::places::{Newton, bits_of};
 use super::solve::Opposed;
-use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
 use crate::linear::ConjugateGradients;
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use bowknot_dynamics::{AssemblySprings, OutOfBalance};
 use bowknot_geometry::Vector;
 use std::fmt::Debug;
@@ -18,9 +17,9 @@ impl Newton {
     pub fn record_momenta(&self, row_sums: BufferId, recording: &mut Recording) -> (BufferId, usize) {
         let v = &self.vectors;
         recording.dispatch(
-            &stages::MOMENTA,
+            &kernels::MOMENTA,
             &[v.blocks, v.iterate, v.start, row_sums, v.step, v.totals],
-            cpu::momenta::Params { nodes: self.nodes as u32, quantum: self.grid.quantum as f32 },
+            kernels::momenta::Params { nodes: self.nodes as u32, quantum: self.grid.quantum as f32 },
             self.nodes,
         );
         (v.totals, 4 * self.blocks.count())
@@ -59,9 +58,9 @@ impl Newton {
         let v = &self.vectors;
         recording.write(v.translations, &self.blocks.spread(translations));
         recording.dispatch(
-            &stages::TRANSLATE,
+            &kernels::TRANSLATE,
             &[v.blocks, v.translations, v.free, v.step],
-            cpu::translate::Params { nodes: self.nodes as u32 },
+            kernels::translate::Params { nodes: self.nodes as u32 },
             self.nodes,
         );
     }
@@ -95,18 +94,18 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         // The gradient without known forces lies where the search direction goes.
         newton.record_copy(v.gradient, b.direction, &mut recording);
         recording.dispatch(
-            &stages::SUBTRACT_KNOWN,
+            &kernels::SUBTRACT_KNOWN,
             &[v.watched, v.forces, b.direction],
-            cpu::subtract_known::Params { count: forces as u32 },
+            kernels::subtract_known::Params { count: forces as u32 },
             forces,
         );
         let opposed = Opposed { gradient: b.direction, counted: v.counted, springs: 0, imposes: false };
         newton.record_right_side(b, &opposed, &mut recording);
         newton.outside(recorder).record_residual(0, &mut recording);
         recording.dispatch(
-            &stages::PRODUCTS,
+            &kernels::PRODUCTS,
             &[v.blocks, b.solution, b.direction, v.totals],
-            cpu::products::Params { nodes: newton.nodes as u32 },
+            kernels::products::Params { nodes: newton.nodes as u32 },
             newton.nodes,
         );
         let read =

@@ -1,7 +1,7 @@
 //! Blocks of nodes: those of one component within a window of 256. The device sums over blocks, the host over the
 //! blocks of each component.
 
-use crate::cpu::newton::WINDOW;
+use super::layout::WINDOW;
 use bowknot_dynamics::LinearSpring;
 use bowknot_geometry::Vector;
 use std::ops::Range;

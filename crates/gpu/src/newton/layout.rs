@@ -1,8 +1,12 @@
 //! The data of Newton's method that host, kernels and twins share. A test compares it with what the shaders declare
 //! (`stages/tests.rs`).
 
-use crate::cpu::sum::MOST_WORKGROUPS;
+use crate::kernels;
+use crate::linear::MOST_WORKGROUPS;
 use bytemuck::{Pod, Zeroable};
+
+/// Nodes of which a workgroup adds up the momenta.
+pub const WINDOW: usize = kernels::momenta::WINDOW as usize;
 
 /// How far a linear solve is. Norms are squared, and those of vectors times the factor.
 #[repr(C)]

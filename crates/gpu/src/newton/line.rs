@@ -2,12 +2,11 @@
 
 use super::layout::{SUMMARY, SUMS};
 use super::places::{Newton, bits};
-use crate::cpu;
-use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
+use crate::linear::{MOST_WORKGROUPS, THREADS};
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use bowknot_dynamics::{Trial, Watched};
 
 /// Largest coordinate of the grid, as a number: see `attempt.wgsl`.
@@ -27,9 +26,9 @@ impl Newton {
     pub fn record_attempt(&self, length: f64, trial: BufferId, recording: &mut Recording) {
         let (v, workgroups) = (&self.vectors, self.workgroups());
         recording.dispatch(
-            &stages::ATTEMPT,
+            &kernels::ATTEMPT,
             &[v.iterate, v.imposed, v.free, v.step, v.right_side, v.target_start, trial, v.sums],
-            cpu::attempt::Params {
+            kernels::attempt::Params {
                 nodes: self.nodes as u32,
                 workgroups: workgroups as u32,
                 imposed: u32::from(self.imposes),
@@ -64,7 +63,12 @@ impl Newton {
         let v = &self.vectors;
         self.record_attempt(length, v.trial, recording);
         let count = self.workgroups() as u32;
-        recording.dispatch(&stages::SUMMARIZE, &[v.sums, v.summary], cpu::summarize::Params { count }, 1);
+        recording.dispatch(
+            &kernels::SUMMARIZE,
+            &[v.sums, v.summary],
+            kernels::summarize::Params { count },
+            1,
+        );
         if length == 0.0 {
             self.record_copy(v.trial, v.reference, recording);
         }

@@ -19,14 +19,13 @@
 mod backend;
 mod balance;
 mod blocks;
-mod layout;
+pub(crate) mod layout;
 mod line;
 mod places;
 mod rounds;
 mod solve;
 mod vectors;
 
-pub(crate) use layout::Solve;
 pub(crate) use places::Newton;
 
 #[cfg(test)]

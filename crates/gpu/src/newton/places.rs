@@ -3,13 +3,12 @@
 use super::blocks::Blocks;
 use super::vectors::Vectors;
 use crate::assembly::StateGrid;
-use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
 use crate::parallel::{all, collected, collected_numbers, largest};
 use crate::potential::Potential;
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use bowknot_dynamics::{ElementModel, NewtonStep, NewtonTarget, Watched};
 use bowknot_geometry::Vector;
 
@@ -230,7 +229,7 @@ impl Newton {
     /// Records a copy of positions.
     pub fn record_copy(&self, from: BufferId, to: BufferId, recording: &mut Recording) {
         let words = 4 * self.nodes;
-        recording.dispatch(&stages::COPY, &[from, to], cpu::copy::Params { words: words as u32 }, words);
+        recording.dispatch(&kernels::COPY, &[from, to], kernels::copy::Params { words: words as u32 }, words);
     }
 
     /// Records that entries of the watched nodes go where they are read; returns from where, and how many words.
@@ -243,9 +242,9 @@ impl Newton {
     ) -> (BufferId, usize) {
         let nodes = self.watched.len();
         recording.dispatch(
-            &stages::GATHER,
+            &kernels::GATHER,
             &[self.vectors.watched, from, seen],
-            cpu::gather::Params { nodes: nodes as u32, width: width as u32 },
+            kernels::gather::Params { nodes: nodes as u32, width: width as u32 },
             nodes,
         );
         (seen, width * nodes)
@@ -256,13 +255,15 @@ impl Newton {
         let mut left = bits;
         while left > 0 {
             let shift = left.min(MOST_BITS);
-            let params = cpu::regrid::Params { nodes: self.nodes as u32, shift };
+            let params = kernels::regrid::Params { nodes: self.nodes as u32, shift };
             for positions in self.vectors.positions() {
-                recording.dispatch(&stages::REGRID, &[positions], params, self.nodes);
+                recording.dispatch(&kernels::REGRID, &[positions], params, self.nodes);
             }
             for positions in [&mut self.start, &mut self.step_start] {
-                let nodes = positions.len() as u32;
-                cpu::regrid::regrid(cpu::regrid::Params { nodes, shift }, positions);
+                let coarser = |x: i32| (x + (1 << (shift - 1))) >> shift;
+                for [x, y, z, _] in positions.iter_mut() {
+                    [*x, *y, *z] = [*x, *y, *z].map(coarser);
+                }
             }
             self.grid.quantum *= f64::from(1u32 << shift);
             left -= shift;

@@ -6,9 +6,9 @@
 use super::layout::Solve;
 use super::places::Newton;
 use super::solve::Opposed;
-use crate::cpu::settle;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels::settle;
 use crate::linear::{ConjugateGradients, Recorder};
 use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{AssemblySprings, CgInfo, NewtonSolve, SolveLimits};

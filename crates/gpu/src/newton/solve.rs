@@ -5,12 +5,11 @@
 
 use super::layout::{FIRST_SUM, Solve};
 use super::places::Newton;
-use crate::cpu;
-use crate::cpu::settle;
-use crate::cpu::sum::THREADS;
+use crate::kernels;
+use crate::kernels::settle;
+use crate::linear::THREADS;
 use crate::linear::{Buffers, Progress, Recorder};
 use crate::recording::{BufferId, Recording};
-use crate::stages;
 use bowknot_dynamics::SolveLimits;
 
 /// Forces that a right-hand side opposes.
@@ -44,9 +43,9 @@ impl Newton {
     pub fn record_imposed(&self, recorder: &Recorder, recording: &mut Recording) {
         let b = &recorder.buffers;
         recording.dispatch(
-            &stages::IMPOSE,
+            &kernels::IMPOSE,
             &[self.vectors.imposed, b.direction],
-            cpu::impose::Params { nodes: self.nodes as u32, quantum: self.grid.quantum as f32 },
+            kernels::impose::Params { nodes: self.nodes as u32, quantum: self.grid.quantum as f32 },
             self.nodes,
         );
         self.outside(recorder).record_image(recording);
@@ -56,9 +55,9 @@ impl Newton {
     pub fn record_right_side(&self, b: &Buffers, opposed: &Opposed, recording: &mut Recording) {
         let (v, workgroups) = (&self.vectors, self.workgroups());
         recording.dispatch(
-            &stages::NEGATE,
+            &kernels::NEGATE,
             &[opposed.gradient, b.image, b.springs, b.spring_words, opposed.counted, v.right_side, v.sums],
-            cpu::negate::Params {
+            kernels::negate::Params {
                 nodes: self.nodes as u32,
                 springs: opposed.springs as u32,
                 imposed: u32::from(opposed.imposes),
@@ -76,9 +75,9 @@ impl Newton {
     pub fn record_residue(&self, b: &Buffers, subtract: bool, recording: &mut Recording) {
         let v = &self.vectors;
         recording.dispatch(
-            &stages::RESIDUE,
+            &kernels::RESIDUE,
             &[v.right_side, b.image, v.solve, b.direction],
-            cpu::residue::Params { nodes: self.nodes as u32, subtract: u32::from(subtract) },
+            kernels::residue::Params { nodes: self.nodes as u32, subtract: u32::from(subtract) },
             self.nodes,
         );
     }
@@ -91,7 +90,7 @@ impl Newton {
         recording: &mut Recording,
     ) {
         let v = &self.vectors;
-        recording.dispatch(&stages::SETTLE, &[sums, v.solve, b.progress, v.ended], params, 1);
+        recording.dispatch(&kernels::SETTLE, &[sums, v.solve, b.progress, v.ended], params, 1);
     }
 
     /// Records that the norms of step `k` of the solve become those of the mode.
@@ -121,9 +120,9 @@ impl Newton {
         let (nodes, workgroups) = (self.nodes as u32, self.workgroups() as u32);
         let count = 1 + u32::from(self.has_last);
         recording.dispatch(
-            &stages::GUESS,
+            &kernels::GUESS,
             &[v.iterate, v.inertial, v.last, v.free, b.direction, v.second],
-            cpu::guess::Params { nodes, count, quantum: self.grid.quantum as f32 },
+            kernels::guess::Params { nodes, count, quantum: self.grid.quantum as f32 },
             self.nodes,
         );
         let mut images = self.outside(recorder);
@@ -135,15 +134,15 @@ impl Newton {
         }
         let first = FIRST_SUM as u32;
         recording.dispatch(
-            &stages::CORRELATE,
+            &kernels::CORRELATE,
             &[b.direction, b.image, v.second, v.second_image, v.right_side, v.sums],
-            cpu::correlate::Params { nodes, count, workgroups, first },
+            kernels::correlate::Params { nodes, count, workgroups, first },
             THREADS * self.workgroups(),
         );
         recording.dispatch(
-            &stages::COMBINE,
+            &kernels::COMBINE,
             &[b.image, v.second, v.second_image, v.right_side, v.sums, v.solve, b.direction, v.step],
-            cpu::combine::Params { nodes, count, workgroups, first },
+            kernels::combine::Params { nodes, count, workgroups, first },
             self.nodes,
         );
     }
@@ -160,9 +159,9 @@ impl Newton {
     ) {
         let (v, b) = (&self.vectors, &recorder.buffers);
         recording.dispatch(
-            &stages::ACCUMULATE,
+            &kernels::ACCUMULATE,
             &[b.solution, b.progress, v.ended, v.solve, v.step],
-            cpu::accumulate::Params { nodes: self.nodes as u32, last: u32::from(is_last) },
+            kernels::accumulate::Params { nodes: self.nodes as u32, last: u32::from(is_last) },
             self.nodes,
         );
         let outside = self.outside(recorder);

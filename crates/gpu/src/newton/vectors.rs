@@ -1,9 +1,9 @@
 //! The vectors of Newton's method on an engine.
 
 use super::layout::{FIRST_SUM, SUMS, Solve};
-use crate::cpu::sum::MOST_WORKGROUPS;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::linear::MOST_WORKGROUPS;
 use crate::linear::Progress;
 use crate::recording::BufferId;
 

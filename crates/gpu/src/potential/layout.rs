@@ -1,7 +1,14 @@
 //! The data of the potential that host, kernels and twins share. A test compares every struct with what the shaders declare
 //! (`stages/tests.rs`). Units are SI; positions are integers, multiples of a quantum.
 
+use crate::kernels;
 use bytemuck::{Pod, Zeroable};
+
+/// Threads of a workgroup that adds up energies.
+pub const THREADS: usize = kernels::node_energy::THREADS as usize;
+
+/// Most workgroups that write partial sums of energies.
+pub const MOST_WORKGROUPS: usize = 1024;
 
 /// The quadratic terms of a node.
 #[repr(C)]

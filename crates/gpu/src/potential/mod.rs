@@ -16,11 +16,10 @@
 //! | `lists` | which gradients of elements, and which entries of K, the gradient by a node sums |
 //! | `record` | the buffers of a model and the dispatches |
 
-mod layout;
+pub(crate) mod layout;
 mod lists;
 mod record;
 
-pub(crate) use layout::{EnergyParams, GradientParams, NodeParams, Pair, Terms};
 #[cfg(test)]
 pub(crate) use record::PotentialChange;
 pub(crate) use record::{Places, Potential};

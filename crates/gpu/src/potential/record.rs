@@ -1,13 +1,14 @@
 //! The buffers of the potential of a model on an engine, and its dispatches.
 
 use super::layout::{EnergyParams, GradientParams, NodeParams, Terms};
+use super::layout::{MOST_WORKGROUPS, THREADS};
 use super::lists::{Lists, NODES, rows};
 use crate::assembly::{ElementBuffers, Written};
-use crate::cpu::parts::{MOST_WORKGROUPS, THREADS};
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::kernels;
 use crate::recording::{BufferId, Recording};
-use crate::stages::{self, Stage};
+use crate::stages::Stage;
 use bowknot_dynamics::{ElementModel, NewtonStep};
 
 /// The error of a change is at most so many units of 2^-24, the rounding of a number, of the sum of the sizes of what it
@@ -151,10 +152,10 @@ impl Potential {
     pub fn record_gradient(&self, at: Places, gradient: BufferId, recording: &mut Recording) {
         let ElementBuffers { membranes, bends, tetrahedra, strands } = self.elements;
         let kinds: [(&'static Stage, BufferId); 4] = [
-            (&stages::MEMBRANE_GRADIENT, membranes),
-            (&stages::BEND_GRADIENT, bends),
-            (&stages::TETRAHEDRON_GRADIENT, tetrahedra),
-            (&stages::STRAND_GRADIENT, strands),
+            (&kernels::MEMBRANE_GRADIENT, membranes),
+            (&kernels::BEND_GRADIENT, bends),
+            (&kernels::TETRAHEDRON_GRADIENT, tetrahedra),
+            (&kernels::STRAND_GRADIENT, strands),
         ];
         let mut first = 0;
         for (((stage, buffer), elements), nodes) in kinds.into_iter().zip(self.counts).zip(NODES) {
@@ -172,7 +173,7 @@ impl Potential {
             first += elements * nodes;
         }
         recording.dispatch(
-            &stages::GATHER_GRADIENT,
+            &kernels::GATHER_GRADIENT,
             &[
                 self.ranges,
                 self.sources,
@@ -201,11 +202,11 @@ impl Potential {
         let states = [reference, trial, start, self.parts];
         let with = |first: &[BufferId]| [first, &states].concat();
         let kinds: [(&'static Stage, Vec<BufferId>); 5] = [
-            (&stages::MEMBRANE_ENERGY, with(&[membranes])),
-            (&stages::BEND_ENERGY, with(&[bends])),
-            (&stages::TETRAHEDRON_ENERGY, with(&[tetrahedra])),
-            (&stages::STRAND_ENERGY, with(&[strands])),
-            (&stages::NODE_ENERGY, with(&[self.ranges, self.pairs, self.terms.buffer])),
+            (&kernels::MEMBRANE_ENERGY, with(&[membranes])),
+            (&kernels::BEND_ENERGY, with(&[bends])),
+            (&kernels::TETRAHEDRON_ENERGY, with(&[tetrahedra])),
+            (&kernels::STRAND_ENERGY, with(&[strands])),
+            (&kernels::NODE_ENERGY, with(&[self.ranges, self.pairs, self.terms.buffer])),
         ];
         let mut first = 0;
         for ((stage, buffers), count) in kinds.into_iter().zip(self.counts.into_iter().chain([self.nodes])) {
@@ -227,7 +228,7 @@ impl Potential {
             rate: self.rate,
             quantum,
         };
-        recording.dispatch(&stages::SUM_ENERGY, &[self.parts, self.sums], params, THREADS * self.sum_count);
+        recording.dispatch(&kernels::SUM_ENERGY, &[self.parts, self.sums], params, THREADS * self.sum_count);
     }
 
     /// What [`Self::energies`] needs after [`Self::record_energies`]: the first words of a buffer, at most 256.

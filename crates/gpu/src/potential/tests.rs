@@ -2,11 +2,11 @@
 
 mod cases;
 
+use super::layout::{MOST_WORKGROUPS, THREADS};
 use super::record::ROUNDING_UNITS;
 use super::{Potential, PotentialChange};
 use crate::adapter::Adapter;
 use crate::assembly::{AssemblyBuffers, Plan};
-use crate::cpu::parts::{MOST_WORKGROUPS, THREADS};
 use crate::engine::{ComparingEngine, DeviceEngine, Engine, TwinEngine};
 use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{BodiesPotential, NewtonStep};

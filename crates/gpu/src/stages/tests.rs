@@ -1,6 +1,7 @@
-use super::{ALL, Access};
+use super::Access;
 use crate::adapter::MOST_IMMEDIATES;
-use crate::{assembly, cpu, layout, linear, newton, potential};
+use crate::kernels::ALL;
+use crate::{assembly, layout, linear, newton, potential};
 use naga::{AddressSpace, StorageAccess, TypeInner};
 
 /// Shaders are valid without a device, and their bindings, workgroups and structs are those of the table.
@@ -76,54 +77,48 @@ fn assert_structs(module: &naga::Module, structs: &[Struct]) {
 #[test]
 fn structs_of_linear_solves_lie_alike_on_both_sides() {
     let structs = [
-        offsets!(linear::PatchSlot: node, factors, arm, link),
-        offsets!(linear::Spring: nodes, weights, hessian),
-        offsets!(linear::Progress: moving, iterations, goal),
+        offsets!(linear::layout::PatchSlot: node, factors, arm, link),
+        offsets!(linear::layout::Spring: nodes, weights, hessian),
+        offsets!(linear::layout::Progress: moving, iterations, goal),
     ];
     assert_structs(&module_of("descend"), &structs);
-    let params = offsets!(cpu::climb::Params: groups, firsts, first_domains, domains, workgroups, present, next, parents);
-    assert_structs(&module_of("climb"), &[params]);
-    // Parameters with an array, which a uniform buffer aligns to 16 bytes.
-    let params = offsets!(cpu::redirect::Params: patches, grouped, start, workgroups, levels, norms, present, next, firsts);
-    assert_structs(&module_of("redirect"), &[params]);
 }
 
 #[test]
 fn structs_of_newtons_method_lie_alike_on_both_sides() {
-    let solve =
-        offsets!(newton::Solve: factor, inverse, scale, before, norm, goal, reached, iterations, ended);
-    let progress = offsets!(linear::Progress: moving, iterations, goal);
+    let solve = offsets!(newton::layout::Solve: factor, inverse, scale, before, norm, goal, reached, iterations, ended);
+    let progress = offsets!(linear::layout::Progress: moving, iterations, goal);
     assert_structs(&module_of("settle"), &[solve, progress]);
 }
 
 #[test]
 fn structs_of_assembly_lie_alike_on_both_sides() {
     let structs = [
-        offsets!(assembly::Membrane: nodes, area, gradients, stiffness, damping, padding),
-        offsets!(assembly::Bend: nodes, jumps, gram, gradients, rest, crushed, padding),
-        offsets!(assembly::Tetrahedron: nodes, gradients, volume, lambda, mu, law, viscous_lambda, viscous_mu, padding),
-        offsets!(assembly::ElementParams: elements, first_block, absolute, rate, quantum),
+        offsets!(assembly::layout::Membrane: nodes, area, gradients, stiffness, damping, padding),
+        offsets!(assembly::layout::Bend: nodes, jumps, gram, gradients, rest, crushed, padding),
+        offsets!(assembly::layout::Tetrahedron: nodes, gradients, volume, lambda, mu, law, viscous_lambda, viscous_mu, padding),
+        offsets!(assembly::layout::ElementParams: elements, first_block, absolute, rate, quantum),
     ];
     assert_structs(&module_of("membrane"), &structs);
-    let strand = offsets!(assembly::Strand: nodes, rest, inverse_lengths, stiffness, damping);
-    let curvature = offsets!(assembly::Curvature: along, axial, across);
+    let strand = offsets!(assembly::layout::Strand: nodes, rest, inverse_lengths, stiffness, damping);
+    let curvature = offsets!(assembly::layout::Curvature: along, axial, across);
     assert_structs(&module_of("strand"), &[strand, curvature]);
-    assert_structs(&module_of("frame"), &[offsets!(assembly::Frame: center, size, moment, held)]);
-    assert_structs(&module_of("coarsen"), &[offsets!(assembly::Part: block, a, b, both)]);
-    assert_structs(&module_of("assemble"), &[offsets!(assembly::Entry: at, first, count, bending)]);
+    assert_structs(&module_of("frame"), &[offsets!(assembly::layout::Frame: center, size, moment, held)]);
+    assert_structs(&module_of("coarsen"), &[offsets!(assembly::layout::Part: block, a, b, both)]);
+    assert_structs(&module_of("assemble"), &[offsets!(assembly::layout::Entry: at, first, count, bending)]);
 }
 
 #[test]
 fn structs_of_the_potential_lie_alike_on_both_sides() {
-    let terms = offsets!(potential::Terms: row_sum, linear);
-    let pair = offsets!(potential::Pair: node, value);
-    let energy_params = offsets!(potential::EnergyParams: count, first, workgroups, rate, quantum);
+    let terms = offsets!(potential::layout::Terms: row_sum, linear);
+    let pair = offsets!(potential::layout::Pair: node, value);
+    let energy_params = offsets!(potential::layout::EnergyParams: count, first, workgroups, rate, quantum);
     assert_structs(
         &module_of("gather_gradient"),
-        &[terms, pair, offsets!(potential::NodeParams: nodes, quantum)],
+        &[terms, pair, offsets!(potential::layout::NodeParams: nodes, quantum)],
     );
     assert_structs(&module_of("node_energy"), &[energy_params]);
-    let gradient_params = offsets!(potential::GradientParams: elements, first, rate, quantum);
+    let gradient_params = offsets!(potential::layout::GradientParams: elements, first, rate, quantum);
     assert_structs(&module_of("bend_gradient"), &[gradient_params]);
 }
 
