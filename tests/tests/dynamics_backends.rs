@@ -166,10 +166,6 @@ impl<E: Metering> NewtonBackend for Counted<E> {
         self.inner.begin_target(target)
     }
 
-    fn begin_again(&mut self) -> Result<Watched, NewtonBackendError> {
-        self.inner.begin_again()
-    }
-
     fn linearize(&mut self, absolute: bool) -> Result<(), NewtonBackendError> {
         self.count_system()?;
         self.inner.linearize(absolute)

@@ -38,6 +38,7 @@ use buffers::{Buffers, Sizes, words};
 pub use carried::Carried;
 use carried::CarriedList;
 use near_list::NearList;
+use std::mem::take;
 pub use stop::Stop;
 use trees::Trees;
 
@@ -278,6 +279,13 @@ pub struct Collision<E> {
     /// The rule of the call, and the contact rows of its last step.
     stop: Stop,
     row_count: usize,
+    /// What the end of the call reads, if the last submission of steps has read it.
+    ended: Option<Vec<Vec<u32>>>,
+    /// [`Control`] at the end of a call.
+    end_control: BufferId,
+    /// Submissions of steps in the call, and in the one before, with its contact rows.
+    submissions: usize,
+    before: [usize; 2],
     /// Whether the next step polishes.
     polishes: bool,
     /// Steps of the call that polished.
@@ -298,6 +306,8 @@ pub struct Collision<E> {
     fresh: bool,
     /// Whether the step is made again, because a buffer was too small.
     again: bool,
+    /// What runs before the next steps, or before the next results are read.
+    pending: Recording,
     /// Whether the candidates are those of the present positions: all pairs that could meet within the trust regions, in
     /// which the vertices are.
     listed: bool,
@@ -413,6 +423,7 @@ impl<E: Engine> Collision<E> {
             vertices.iter().any(|v| v.flags & (Vertex::PRESCRIBED | Vertex::OBSTACLE) == Vertex::PRESCRIBED);
         let buffers = Buffers::new(&mut engine, &sizes)?;
         let near = NearList::new(&mut engine)?;
+        let end_control = engine.buffer("control at the end", words::<Control>(1))?;
         let carried = CarriedList::new(&mut engine)?;
         let mut setup = Recording::default();
         let of_vertices = rest_on_grid.iter().zip(model.vertex_component());
@@ -455,6 +466,10 @@ impl<E: Engine> Collision<E> {
             yields: false,
             stop: Stop::NEVER,
             row_count: 0,
+            ended: None,
+            end_control,
+            submissions: 0,
+            before: [0; 2],
             polishes: false,
             polished: 0,
             expected_steps: [1; 2],
@@ -464,6 +479,7 @@ impl<E: Engine> Collision<E> {
             shrunk: false,
             fresh: false,
             again: false,
+            pending: Recording::default(),
             listed: false,
         })
     }
@@ -477,10 +493,8 @@ impl<E: Engine> Collision<E> {
     pub fn place(&mut self, positions: &[Point]) -> Result<Vec<Point>, CollisionError> {
         check_length("positions", positions.len(), self.sizes.vertices)?;
         let on_grid = snapped(&self.grid, positions)?;
-        let mut recording = Recording::default();
-        recording.write(self.buffers.positions, &padded(&on_grid));
+        self.pending.write(self.buffers.positions, &padded(&on_grid));
         self.listed = false;
-        self.engine.run(&recording, &[])?;
         let grid = self.grid;
         Ok(collected(&on_grid, |&x| grid.position(x)))
     }
@@ -493,9 +507,7 @@ impl<E: Engine> Collision<E> {
     pub fn reorder(&mut self, model: &CollisionModel, order: &[Point]) -> Result<(), CollisionError> {
         check_length("positions", order.len(), self.sizes.vertices)?;
         let order = snapped_elsewhere(&self.grid, order)?;
-        let mut recording = Recording::default();
-        self.trees.reorder(model.topology(), &order, &mut recording);
-        self.engine.run(&recording, &[])?;
+        self.trees.reorder(model.topology(), &order, &mut self.pending);
         Ok(())
     }
 
@@ -522,7 +534,7 @@ impl<E: Engine> Collision<E> {
         let slips_from_here = slip_start.is_empty();
         let changes = self.set_known(call.known)?;
         let carried = carried::sorted(&grid, call.carried);
-        let mut recording = Recording::default();
+        let mut recording = take(&mut self.pending);
         self.carried.set(&mut self.engine, &carried, &mut recording)?;
         let b = &self.buffers;
         if changes {
@@ -551,7 +563,11 @@ impl<E: Engine> Collision<E> {
             },
             self.sizes.vertices.max(self.edges.len()),
         );
-        self.engine.run(&recording, &[])?;
+        self.pending = recording;
+        if self.submissions > 0 {
+            self.before = [self.submissions, self.row_count];
+        }
+        (self.ended, self.submissions) = (None, 0);
         (self.stop, self.row_count, self.polishes, self.polished) = (call.stop, 0, false, 0);
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
         (self.fresh, self.again, self.listed, self.steps_in_a_row) = (true, false, false, 0);
@@ -596,7 +612,7 @@ impl<E: Engine> Collision<E> {
     /// The points of some buffers [m].
     fn points<const N: usize>(&mut self, buffers: [BufferId; N]) -> Result<[Vec<Point>; N], CollisionError> {
         let read = buffers.map(|buffer| (buffer, 4 * self.sizes.vertices));
-        let words = self.engine.run(&Recording::default(), &read)?;
+        let words = self.engine.run(&take(&mut self.pending), &read)?;
         Ok(std::array::from_fn(|k| self.points_of(&words[k])))
     }
 
@@ -623,7 +639,7 @@ impl<E: Engine> Collision<E> {
             (self.buffers.control, words::<Control>(1)),
             (self.buffers.candidates, words::<Candidate>(self.buffers.capacity)),
         ];
-        let all = self.engine.run(&Recording::default(), &read)?;
+        let all = self.engine.run(&take(&mut self.pending), &read)?;
         let control: Control = bytemuck::cast_slice(&all[0])[0];
         let candidates: &[Candidate] = bytemuck::cast_slice(&all[1]);
         let mut candidates = candidates[..control.candidates as usize].to_vec();

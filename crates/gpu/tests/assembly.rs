@@ -125,10 +125,6 @@ impl<E: Engine + Debug + Send> NewtonBackend for Assembling<E> {
         self.inner.begin_target(target)
     }
 
-    fn begin_again(&mut self) -> Result<Watched, NewtonBackendError> {
-        self.inner.begin_again()
-    }
-
     fn linearize(&mut self, absolute: bool) -> Result<(), NewtonBackendError> {
         *self.linearized.lock().expect("no panic") += 1;
         self.absolute = absolute;

@@ -61,10 +61,6 @@ impl NewtonBackend for Idle {
         Ok(self.iterate.clone())
     }
 
-    fn begin_again(&mut self) -> Result<Watched, NewtonBackendError> {
-        Ok(self.iterate.clone())
-    }
-
     fn linearize(&mut self, _absolute: bool) -> Result<(), NewtonBackendError> {
         self.answer()
     }

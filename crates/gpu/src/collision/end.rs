@@ -2,7 +2,7 @@
 //!
 //! **No pair within range is missing.** The boxes of the last search hold the trust regions of the vertices and, around
 //! them, their margins; a pair that it did not list has boxes apart along an axis. All vertices are still in their
-//! regions: a step moves none out of its region, or searches first ([`cover`](crate::cpu::cover)); safety rests on the
+//! regions: a step moves none out of its region, or searches first ([`cover`](crate::kernels::cover)); safety rests on the
 //! same. Both elements lie within the boxes of their regions, so their distance exceeds both margins, which is the largest
 //! range of any of their pairs. In the same way a half-space that was not listed is farther from the whole region of a
 //! vertex than twice its margin, the rounding of the plane included. So all pairs within range are candidates, also after
@@ -18,7 +18,7 @@ use crate::error::GpuError;
 use crate::kernels;
 use crate::kernels::count::CONTACT_ROWS;
 use crate::layout::{Candidate, Control, Row};
-use crate::recording::Recording;
+use crate::recording::{BufferId, Recording};
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 
@@ -31,17 +31,18 @@ impl<E: Engine> Collision<E> {
     /// # Errors
     /// The device failed.
     pub fn end(&mut self) -> Result<End, CollisionError> {
-        let vertices = 4 * self.sizes.vertices;
-        let recording = self.record_end()?;
-        let read = [
-            (self.buffers.positions, vertices),
-            (self.buffers.aims, vertices),
-            (self.buffers.rows.rows, words::<Row>(self.row_count)),
-            (self.buffers.rows.pairs, words::<Candidate>(self.row_count)),
-            (self.buffers.control, words::<Control>(1)),
-            (self.near.buffer, words::<Candidate>(self.near.capacity)),
-        ];
-        let mut all = self.engine.run(&recording, &read)?;
+        let mut all = match self.ended.take() {
+            Some(all) => all,
+            None => {
+                let mut recording = std::mem::take(&mut self.pending);
+                if self.listed {
+                    // The candidates may have grown in the last step.
+                    self.buffers.make_room_for_step(&mut self.engine)?;
+                    self.record_end(&mut recording);
+                }
+                self.engine.run(&recording, &self.end_reads(self.row_count))?
+            }
+        };
         let near = self.listed.then(|| self.near_pairs([4, 5].map(|k| std::mem::take(&mut all[k]))));
         let [positions, aims] = [0, 1].map(|k| self.points_of(&all[k]));
         let (rows, pairs): (&[Row], &[Candidate]) =
@@ -55,19 +56,31 @@ impl<E: Engine> Collision<E> {
             slip: vector(row.slip),
             coefficient: f64::from(row.coefficient),
         };
-        let rows = rows.iter().zip(pairs).map(row).collect();
+        let rows = rows.iter().zip(pairs).take(self.row_count).map(row).collect();
         Ok(End { positions, aims, rows, near: near.transpose()? })
     }
 
-    /// Lists the pairs that may be within range at the present positions, if there are candidates for them.
-    fn record_end(&mut self) -> Result<Recording, GpuError> {
-        let mut recording = Recording::default();
-        if !self.listed {
-            return Ok(recording);
-        }
-        // The candidates may have grown in the last step.
-        self.buffers.make_room_for_step(&mut self.engine)?;
-        self.record_separations(false, &mut recording);
+    /// What is read at the end of a call with so many contact rows.
+    pub(super) fn end_reads(&self, rows: usize) -> [(BufferId, usize); 6] {
+        let vertices = 4 * self.sizes.vertices;
+        [
+            (self.buffers.positions, vertices),
+            (self.buffers.aims, vertices),
+            (self.buffers.rows.rows, words::<Row>(rows)),
+            (self.buffers.rows.pairs, words::<Candidate>(rows)),
+            (self.end_control, words::<Control>(1)),
+            (self.near.buffer, words::<Candidate>(self.near.capacity)),
+        ]
+    }
+
+    /// Lists the pairs that may be within range at the present positions. The call may go on after it: the next step computes
+    /// all of what it writes anew.
+    pub(super) fn record_end(&mut self, recording: &mut Recording) {
+        let control = words::<Control>(1);
+        let params = kernels::copy::Params { words: control as u32 };
+        recording.dispatch(&kernels::COPY, &[self.buffers.control, self.end_control], params, control);
+        std::mem::swap(&mut self.buffers.control, &mut self.end_control);
+        self.record_separations(false, recording);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
             &kernels::NEAR,
@@ -75,7 +88,7 @@ impl<E: Engine> Collision<E> {
             kernels::near::Params { capacity },
             self.buffers.capacity,
         );
-        // Their number takes the place of that of the contact rows: the next step counts its rows anew.
+        // Their number takes the place of that of the contact rows in the copy.
         let places = ListPlaces {
             starts: b.picks.starts,
             blocks: b.picks.blocks,
@@ -83,9 +96,9 @@ impl<E: Engine> Collision<E> {
             capacity: self.near.capacity as u32,
             list: CONTACT_ROWS,
         };
-        self.record_places(&places, &mut recording);
-        self.record_gather(&mut recording);
-        Ok(recording)
+        self.record_places(&places, recording);
+        self.record_gather(recording);
+        std::mem::swap(&mut self.buffers.control, &mut self.end_control);
     }
 
     fn record_gather(&self, recording: &mut Recording) {
@@ -110,7 +123,9 @@ impl<E: Engine> Collision<E> {
         } else {
             self.near.grow(&mut self.engine, count)?;
             let mut recording = Recording::default();
+            std::mem::swap(&mut self.buffers.control, &mut self.end_control);
             self.record_gather(&mut recording);
+            std::mem::swap(&mut self.buffers.control, &mut self.end_control);
             self.engine.run(&recording, &[(self.near.buffer, words::<Candidate>(count))])?.swap_remove(0)
         };
         let mut near = bytemuck::cast_slice::<u32, Candidate>(&list)[..count].to_vec();

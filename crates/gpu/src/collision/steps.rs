@@ -6,10 +6,14 @@ use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::Control;
 use crate::recording::Recording;
+use std::mem::take;
 
 /// Smallest factor on travel and trust regions. Candidates are then little more than the pairs within contact range, and
 /// steps are still longer than the moves that count as progress when a call may have stalled.
 const SMALLEST_TRAVEL: f32 = 1.0 / 64.0;
+
+/// So many contact rows, and a quarter, are read more than the last call had.
+const MORE_ROWS: usize = 16;
 
 impl Settings {
     /// Whether steps can polish.
@@ -81,10 +85,19 @@ impl<E: Engine> Collision<E> {
             self.buffers.make_room_for_step(&mut self.engine)?;
         }
         self.listed = false;
-        let recording = self.record_submission(steps)?;
-        let read =
-            [(self.buffers.control, words::<Control>(1)), (self.buffers.reports, words::<Control>(steps))];
-        let all = self.engine.run(&recording, &read)?;
+        let mut recording = self.record_submission(steps)?;
+        let control = (self.buffers.control, words::<Control>(1));
+        let mut read = vec![control, (self.buffers.reports, words::<Control>(steps))];
+        // The end of the call comes with it where the last call took no more submissions. Room was made above.
+        self.submissions += 1;
+        let [submissions, rows] = self.before;
+        let ends = steps > 0 && self.submissions >= submissions && (self.fresh || !self.again);
+        let rows = (rows + rows / 4 + MORE_ROWS).min(self.buffers.row_capacity);
+        if ends {
+            self.record_end(&mut recording);
+            read.extend(self.end_reads(rows));
+        }
+        let mut all = self.engine.run(&recording, &read)?;
         let control = bytemuck::cast_slice::<u32, Control>(&all[0])[0];
         let made = control.steps as usize;
         if self.polishes {
@@ -107,6 +120,8 @@ impl<E: Engine> Collision<E> {
             self.polishes = self.settings.polishes_after(last);
             self.row_count = last.contact_rows;
         }
+        let has_ended = ends && self.listed && self.row_count <= rows;
+        self.ended = has_ended.then(|| all.split_off(2));
         Ok(control)
     }
 
@@ -126,7 +141,7 @@ impl<E: Engine> Collision<E> {
         let dispatches = steps * self.dispatches_per_step();
         self.buffers.make_room_for_steps(&mut self.engine, steps, dispatches)?;
         let arguments = self.buffers.arguments;
-        let (mut recording, mut place, mut left) = (Recording::default(), 0, steps);
+        let (mut recording, mut place, mut left) = (take(&mut self.pending), 0, steps);
         if self.fresh {
             self.record_first_search(dispatches, &mut recording);
         } else if steps > 0 {

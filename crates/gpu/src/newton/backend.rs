@@ -13,6 +13,7 @@ use bowknot_dynamics::{
 };
 use bowknot_geometry::Vector;
 use std::fmt::Debug;
+use std::mem::take;
 
 /// A call before [`NewtonBackend::set_model`].
 #[derive(Debug, thiserror::Error)]
@@ -27,6 +28,15 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         }
     }
 
+    /// Records what runs before the next results are read.
+    fn record(&mut self, of: impl FnOnce(&mut Newton, &mut Recording)) -> Result<(), NewtonBackendError> {
+        let (newton, _) = self.newton()?;
+        let mut recording = take(&mut newton.pending);
+        of(newton, &mut recording);
+        newton.pending = recording;
+        Ok(())
+    }
+
     /// Takes over a model for Newton's method.
     fn take_newton_model(&mut self, model: &ElementModel) -> Result<(), GpuError> {
         self.take_model(model)?;
@@ -39,22 +49,25 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
 
     fn begin_newton_step(&mut self, step: &NewtonStep<'_>) -> Result<(), GpuError> {
         let (Some(newton), Some(assembly)) = (&mut self.newton, &mut self.assembly) else { return Ok(()) };
-        let mut recording = Recording::default();
+        let mut recording = take(&mut newton.pending);
         newton.potential.write_step(&mut self.engine, &assembly.model, step, &mut recording)?;
         newton.begin_step(step, &mut recording);
         assembly.buffers.write_row_sums(step.row_sums, &mut recording);
         assembly.buffers.set_bending(step.bending, step.scalars);
-        self.engine.run(&recording, &[])?;
+        newton.pending = recording;
         Ok(())
     }
 
     fn begin_newton_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, GpuError> {
         self.set_free(target.free)?;
         let Some(newton) = &mut self.newton else { return Ok(Watched::new()) };
-        newton.vectors.watch(&mut self.engine, target.watched.len())?;
-        let mut recording = Recording::default();
+        if !newton.vectors.can_watch(&self.engine, target.watched.len()) {
+            self.engine.run(&take(&mut newton.pending), &[])?;
+            newton.vectors.watch(&mut self.engine, target.watched.len())?;
+        }
+        let mut recording = take(&mut newton.pending);
         let watched = newton.begin_target(target, &mut recording);
-        self.engine.run(&recording, &[])?;
+        newton.pending = recording;
         Ok(watched)
     }
 
@@ -62,8 +75,9 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
     fn linearize_newton(&mut self, absolute: bool) -> Result<(), GpuError> {
         let Some(buffers) = self.make_room()? else { return Ok(()) };
         let (Some(newton), Some(assembly)) = (&mut self.newton, &mut self.assembly) else { return Ok(()) };
+        // Buffers of the matrix have the same sizes from now on, so the next call that makes room frees none of them.
+        let mut recording = take(&mut newton.pending);
         let (v, quantum) = (&newton.vectors, newton.grid.quantum);
-        let mut recording = Recording::default();
         let wanted = Some((newton.iterate, absolute));
         if newton.matrix_of != wanted {
             let place =
@@ -74,14 +88,14 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
             let places = Places { positions: v.iterate, start: v.start, quantum: quantum as f32 };
             newton.potential.record_gradient(places, v.gradient, &mut recording);
         }
-        self.engine.run(&recording, &[])?;
+        newton.pending = recording;
         (newton.matrix_of, newton.gradient_of) = (wanted, Some(newton.iterate));
         Ok(())
     }
 
     fn read_watched_diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), GpuError> {
-        let (Some(newton), Some(assembly)) = (&self.newton, &self.assembly) else { return Ok(()) };
-        let mut recording = Recording::default();
+        let (Some(newton), Some(assembly)) = (&mut self.newton, &self.assembly) else { return Ok(()) };
+        let mut recording = take(&mut newton.pending);
         let watched =
             newton.record_watched(assembly.buffers.diagonal, 6, newton.vectors.seen, &mut recording);
         let read = self.engine.run(&recording, &[watched])?;
@@ -114,14 +128,6 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
         Ok(self.begin_newton_target(target)?)
     }
 
-    fn begin_again(&mut self) -> Result<Watched, NewtonBackendError> {
-        let (newton, engine) = self.newton()?;
-        let mut recording = Recording::default();
-        let watched = newton.begin_again(&mut recording);
-        engine.run(&recording, &[])?;
-        Ok(watched)
-    }
-
     fn linearize(&mut self, absolute: bool) -> Result<(), NewtonBackendError> {
         self.newton()?;
         Ok(self.linearize_newton(absolute)?)
@@ -149,11 +155,7 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
     }
 
     fn translate(&mut self, translations: &[Vector]) -> Result<(), NewtonBackendError> {
-        let (newton, engine) = self.newton()?;
-        let mut recording = Recording::default();
-        newton.record_translations(translations, &mut recording);
-        engine.run(&recording, &[])?;
-        Ok(())
+        self.record(|newton, recording| newton.record_translations(translations, recording))
     }
 
     fn place(&mut self, length: f64) -> Result<Trial, NewtonBackendError> {
@@ -167,36 +169,33 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
     }
 
     fn start_from_trial(&mut self) -> Result<(), NewtonBackendError> {
-        let (newton, engine) = self.newton()?;
-        let mut recording = Recording::default();
-        newton.start_from_trial(&mut recording);
-        engine.run(&recording, &[])?;
-        Ok(())
+        self.record(Newton::start_from_trial)
     }
 
     fn keep_trial(&mut self) -> Result<(), NewtonBackendError> {
-        let (newton, engine) = self.newton()?;
-        let mut recording = Recording::default();
-        newton.record_copy(newton.vectors.trial, newton.vectors.kept, &mut recording);
-        engine.run(&recording, &[])?;
-        Ok(())
+        self.record(|newton, recording| {
+            newton.record_copy(newton.vectors.trial, newton.vectors.kept, recording);
+        })
     }
 
     fn start_from_kept_trial(&mut self) -> Result<(), NewtonBackendError> {
-        let (newton, engine) = self.newton()?;
-        let mut recording = Recording::default();
-        newton.start_from_kept_trial(&mut recording);
-        engine.run(&recording, &[])?;
-        Ok(())
+        self.record(Newton::start_from_kept_trial)
     }
 
     fn target(&mut self, y: &mut [Vector]) -> Result<(), NewtonBackendError> {
+        self.record(|newton, recording| {
+            newton.record_copy(newton.vectors.trial, newton.vectors.last, recording);
+            newton.has_last = true;
+        })?;
         let (newton, engine) = self.newton()?;
-        let mut recording = Recording::default();
-        newton.record_copy(newton.vectors.trial, newton.vectors.last, &mut recording);
-        let read = engine.run(&recording, &[(newton.vectors.trial, 4 * newton.nodes)])?;
-        newton.has_last = true;
-        y.iter_mut().zip(newton.positions(&read[0])).for_each(|(y, x)| *y = x);
+        let words = match newton.trial_words.take() {
+            Some(words) => words,
+            None => {
+                let read = [(newton.vectors.trial, 4 * newton.nodes)];
+                engine.run(&take(&mut newton.pending), &read)?.swap_remove(0)
+            }
+        };
+        y.iter_mut().zip(newton.positions(&words)).for_each(|(y, x)| *y = x);
         Ok(())
     }
 

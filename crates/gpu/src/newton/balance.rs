@@ -36,7 +36,7 @@ impl Newton {
         let words = match self.momenta.take() {
             Some(words) => words,
             None => {
-                let mut recording = Recording::default();
+                let mut recording = std::mem::take(&mut self.pending);
                 let read = self.record_momenta(row_sums, &mut recording);
                 engine.run(&recording, &[read])?.swap_remove(0)
             }
@@ -51,7 +51,7 @@ impl Newton {
 
     /// Records translations of components.
     pub fn record_translations(&mut self, translations: &[Vector], recording: &mut Recording) {
-        self.momenta = None;
+        (self.momenta, self.searched) = (None, None);
         if translations.iter().all(|way| *way == Vector::zeros()) {
             return;
         }
@@ -79,7 +79,7 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         };
         newton.is_solved = false;
         let (iterate, quantum) = (newton.vectors.iterate, newton.grid.quantum);
-        let mut recording = Recording::default();
+        let mut recording = std::mem::take(&mut newton.pending);
         newton.record_before(&mut recording);
         let counts = assembly.free_nodes().iter().zip(counted).map(|(free, counted)| *free && *counted);
         recording.write(newton.vectors.counted, &bits_of(counts));

@@ -8,6 +8,7 @@ use crate::kernels;
 use crate::linear::{MOST_WORKGROUPS, THREADS};
 use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{Trial, Watched};
+use std::mem::take;
 
 /// Largest coordinate of the grid, as a number: see `attempt.wgsl`.
 const REACH: f64 = ((1u32 << 29) - 1) as f64;
@@ -15,6 +16,18 @@ const REACH: f64 = ((1u32 << 29) - 1) as f64;
 /// Bits by which the grid may get coarser for a trial. A trial that would need more is 16 times as far as the state is
 /// large: it ends at the border of the grid, where the line search refuses it, and shorter ones keep their digits.
 const MOST_BITS: u32 = 4;
+
+/// Most nodes whose trials are read as a whole each time: a target then takes no wait of its own.
+const MOST_READ: usize = 1 << 14;
+
+/// The begin of a search along a step: watched nodes at the reference, the trial at full length, and, if it was read, where
+/// its nodes are.
+#[derive(Debug)]
+pub struct Search {
+    at_reference: Watched,
+    trial: Trial,
+    words: Option<Vec<u32>>,
+}
 
 impl Newton {
     /// Workgroups of the stages that sum over all nodes.
@@ -38,28 +51,48 @@ impl Newton {
         );
     }
 
-    /// Makes the reference, and the trial at full length with its energies, in one submission. Returns the watched nodes at the
-    /// reference too.
+    /// Records the reference, and the trial at full length with its energies. Returns what to read.
+    pub fn record_search(&self, recording: &mut Recording) -> Vec<(BufferId, usize)> {
+        let v = &self.vectors;
+        self.record_attempt(0.0, v.reference, recording);
+        let seen = self.record_watched(v.reference, 4, v.seen_at_reference, recording);
+        [vec![seen], self.record_trial(1.0, recording)].concat()
+    }
+
+    /// A search from what was read of it; None if the grid is too small for it.
+    pub fn search(&self, read: &mut [Vec<u32>]) -> Option<Search> {
+        let summary = Summary::new(&read[1]);
+        (summary.missing_bits() == 0).then(|| Search {
+            at_reference: self.positions(&read[0]).collect(),
+            trial: self.trial(&summary, &read[2], &read[3]),
+            words: read.get_mut(4).map(take),
+        })
+    }
+
+    /// Makes the reference, and the trial at full length with its energies, in one submission if the solve has not made them.
+    /// Returns the watched nodes at the reference too.
     pub fn begin_search<E: Engine>(&mut self, engine: &mut E) -> Result<(Watched, Trial), GpuError> {
         if self.is_solved {
-            let mut recording = Recording::default();
-            let v = &self.vectors;
-            self.record_attempt(0.0, v.reference, &mut recording);
-            let seen = self.record_watched(v.reference, 4, v.seen_at_reference, &mut recording);
-            let mut read = self.record_trial(1.0, &mut recording).to_vec();
-            read.push(seen);
-            let read = engine.run(&recording, &read)?;
-            let summary = Summary::new(&read[0]);
-            if summary.missing_bits() == 0 {
-                return Ok((self.positions(&read[3]).collect(), self.trial(&summary, &read[1], &read[2])));
+            let found = match self.searched.take() {
+                Some(found) => Some(found),
+                None => {
+                    let mut recording = take(&mut self.pending);
+                    let read = self.record_search(&mut recording);
+                    self.search(&mut engine.run(&recording, &read)?)
+                }
+            };
+            if let Some(Search { at_reference, trial, words }) = found {
+                self.trial_words = words;
+                return Ok((at_reference, trial));
             }
         }
         let reference = self.make_trial(engine, 0.0)?;
         Ok((reference.watched, self.make_trial(engine, 1.0)?))
     }
 
-    /// Records a trial with its energies. Returns what to read: a [`Summary`], energies, watched nodes.
-    fn record_trial(&self, length: f64, recording: &mut Recording) -> [(BufferId, usize); 3] {
+    /// Records a trial with its energies. Returns what to read: a [`Summary`], energies, watched nodes, and of a small model
+    /// the trial.
+    fn record_trial(&self, length: f64, recording: &mut Recording) -> Vec<(BufferId, usize)> {
         let v = &self.vectors;
         self.record_attempt(length, v.trial, recording);
         let count = self.workgroups() as u32;
@@ -75,18 +108,23 @@ impl Newton {
         let quantum = self.grid.quantum as f32;
         self.potential.record_energies(v.reference, v.trial, v.start, quantum, recording);
         let watched = self.record_watched(v.trial, 4, v.seen, recording);
-        [(v.summary, SUMS), self.potential.energy_words(), watched]
+        let mut read = vec![(v.summary, SUMS), self.potential.energy_words(), watched];
+        if self.nodes <= MOST_READ {
+            read.push((v.trial, 4 * self.nodes));
+        }
+        read
     }
 
     /// Makes a trial with its energies.
     pub fn make_trial<E: Engine>(&mut self, engine: &mut E, length: f64) -> Result<Trial, GpuError> {
         // There is no step before a solve.
         let length = if self.is_solved { length } else { 0.0 };
-        let mut recording = Recording::default();
+        let mut recording = take(&mut self.pending);
         let mut is_coarsened = false;
+        self.change_trial();
         loop {
             let wanted = self.record_trial(length, &mut recording);
-            let read = engine.run(&recording, &wanted)?;
+            let mut read = engine.run(&recording, &wanted)?;
             let summary = Summary::new(&read[0]);
             let needed = summary.missing_bits();
             if needed > 0 && needed <= MOST_BITS && !is_coarsened {
@@ -95,6 +133,7 @@ impl Newton {
                 is_coarsened = true;
                 continue;
             }
+            self.trial_words = read.get_mut(3).map(take);
             return Ok(self.trial(&summary, &read[1], &read[2]));
         }
     }

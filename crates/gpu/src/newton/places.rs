@@ -1,6 +1,7 @@
 //! Time steps and targets: where the nodes are, and which of them are free.
 
 use super::blocks::Blocks;
+use super::line::Search;
 use super::vectors::Vectors;
 use crate::assembly::StateGrid;
 use crate::engine::Engine;
@@ -11,11 +12,15 @@ use crate::potential::Potential;
 use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{ElementModel, NewtonStep, NewtonTarget, Watched};
 use bowknot_geometry::Vector;
+use std::collections::HashMap;
 
 /// Side of the smallest box that a grid reaches over, as a share of the size of the model at rest, and that of a model
 /// without a size [m].
 const MIN_SIDE: f64 = 0.25;
 const SIDE_OF_A_POINT: f64 = 1e-3;
+
+/// Solves of a target that have places of their own; in the same ones of the next targets there are about as many iterations.
+const MOST_SOLVES: usize = 16;
 
 /// Most bits by which a stage coarsens a grid.
 const MOST_BITS: u32 = 20;
@@ -49,6 +54,15 @@ pub struct Newton {
     pub watched: Vec<u32>,
     /// Which nodes are free.
     free: Vec<bool>,
+    /// What runs before the next results are read: a submission takes the host as long as several dispatches.
+    pub pending: Recording,
+    /// The place of the next solve in its time step, and the iterations of the last two solves at each place.
+    pub place: usize,
+    pub iterations: HashMap<usize, [usize; 2]>,
+    /// A search along the step of the last solve, if it was made with it.
+    pub searched: Option<Search>,
+    /// The trial, if it was read.
+    pub trial_words: Option<Vec<u32>>,
     pub has_last: bool,
     /// Whether the step and the right-hand side are those of a solve.
     pub is_solved: bool,
@@ -71,9 +85,8 @@ impl Newton {
         let nodes = model.rest.len();
         let blocks = Blocks::new(&model.components, nodes);
         let vectors = Vectors::new(engine, nodes, blocks.count(), 0)?;
-        let mut recording = Recording::default();
-        recording.write(vectors.blocks, &blocks.of_nodes);
-        engine.run(&recording, &[])?;
+        let mut pending = Recording::default();
+        pending.write(vectors.blocks, &blocks.of_nodes);
         let low = model.rest.iter().fold(Vector::repeat(f64::INFINITY), |low, x| low.inf(x));
         let high = model.rest.iter().fold(Vector::repeat(f64::NEG_INFINITY), |high, x| high.sup(x));
         let size = (high - low).amax();
@@ -95,6 +108,11 @@ impl Newton {
             imposes: false,
             watched: Vec::new(),
             free: Vec::new(),
+            pending,
+            place: 0,
+            iterations: HashMap::new(),
+            searched: None,
+            trial_words: None,
             has_last: false,
             is_solved: false,
             iterate: 0,
@@ -115,7 +133,12 @@ impl Newton {
     pub fn change_iterate(&mut self) {
         self.iterate = self.next;
         self.next += 1;
-        self.momenta = None;
+        (self.momenta, self.searched) = (None, None);
+    }
+
+    /// Says that the trial changes.
+    pub fn change_trial(&mut self) {
+        (self.searched, self.trial_words) = (None, None);
     }
 
     /// Chooses the grid of a time step and records its positions; the potential has its terms already.
@@ -126,6 +149,7 @@ impl Newton {
         self.has_last = false;
         self.is_solved = false;
         self.imposes = false;
+        self.place = 0;
         self.start.clear();
         (self.gradient_of, self.matrix_of) = (None, None);
         self.step_start = self.points(step.start);
@@ -140,6 +164,7 @@ impl Newton {
 
     /// Records the start of a target. The buffers have room for its watched nodes.
     pub fn begin_target(&mut self, target: &NewtonTarget<'_>, recording: &mut Recording) -> Watched {
+        self.place = self.place.next_multiple_of(MOST_SOLVES);
         let grid = self.grid;
         let moves = !all(target.imposed, |q| *q == Vector::zeros());
         let end = |node: usize| target.iterate[node] + target.imposed[node];
@@ -191,12 +216,6 @@ impl Newton {
         self.record_beginning(recording)
     }
 
-    /// Records the return to the start of the target.
-    pub fn begin_again(&mut self, recording: &mut Recording) -> Watched {
-        self.return_to_start(recording);
-        self.record_beginning(recording)
-    }
-
     fn return_to_start(&mut self, recording: &mut Recording) {
         if self.iterate != self.target {
             self.record_copy(self.vectors.target_start, self.vectors.iterate, recording);
@@ -209,6 +228,7 @@ impl Newton {
         self.imposes = self.start_imposes;
         self.is_solved = false;
         self.momenta = None;
+        self.change_trial();
         self.record_attempt(0.0, self.vectors.trial, recording);
         self.watched.iter().map(|&node| self.grid.position(self.start[node as usize])).collect()
     }
@@ -223,6 +243,7 @@ impl Newton {
     /// Records that the kept trial becomes the trial and the iterate.
     pub fn start_from_kept_trial(&mut self, recording: &mut Recording) {
         self.record_copy(self.vectors.kept, self.vectors.trial, recording);
+        self.change_trial();
         self.start_from_trial(recording);
     }
 
@@ -270,6 +291,7 @@ impl Newton {
         }
         let is_at_start = self.iterate == self.target;
         self.change_iterate();
+        self.change_trial();
         if is_at_start {
             self.target = self.iterate;
         } else {

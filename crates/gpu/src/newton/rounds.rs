@@ -4,6 +4,7 @@
 //! tolerance, a further round corrects p from there.
 
 use super::layout::Solve;
+use super::line::Search;
 use super::places::Newton;
 use super::solve::Opposed;
 use crate::engine::Engine;
@@ -13,6 +14,7 @@ use crate::linear::{ConjugateGradients, Recorder};
 use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{AssemblySprings, CgInfo, NewtonSolve, SolveLimits};
 use std::fmt::Debug;
+use std::mem::take;
 
 /// Share of the residual that a round must take away at least.
 const MIN_GAIN: f64 = 0.5;
@@ -28,15 +30,14 @@ const NOTHING: NewtonSolve = NewtonSolve {
     stalled: false,
 };
 
-/// Iterations of the first batch of a round, fewest and most of the next ones, and most nodes times iterations: a submission must
-/// not take so long that a driver takes the device for lost.
+/// Iterations of a batch about which nothing is known, and fewest and most of the others.
 pub(super) const FIRST_BATCH: usize = 12;
 const MIN_BATCH: usize = 4;
-const MAX_BATCH: usize = 48;
-const MOST_WORK: usize = 1 << 23;
+const MAX_BATCH: usize = 128;
 
-/// A batch has so many times the iterations that are likely to be left, and so many more: one too few costs a submission, one
-/// too many a few dispatches that do nothing.
+/// The first batch of a solve has the most iterations that the last two solves at its place took, the next ones so many times
+/// those that are likely to be left; both have so many more. One too few costs a wait, one too many a few dispatches that do
+/// nothing.
 const CAUTION: f64 = 1.25;
 const SPARE: usize = 2;
 
@@ -51,8 +52,9 @@ struct Rounds<'a, E> {
     limits: &'a SolveLimits,
     /// Sums of rows of the matrix.
     row_sums: BufferId,
-    /// R (d + p) by block after the last batch, if it was read.
+    /// R (d + p) by block after the last batch, or a search from there, if it was read.
     momenta: Option<Vec<u32>>,
+    searched: Option<Search>,
     /// Iterations that are left.
     left: usize,
     /// Steps of conjugate gradients that were recorded, starts of rounds after the first included.
@@ -84,12 +86,19 @@ impl<E: Engine> Rounds<'_, E> {
         self.newton.record_end(self.recorder, self.recorded, is_last, self.limits, &mut recording);
         self.recorded += 1;
         let mut wanted = vec![(self.newton.vectors.solve, Solve::WORDS)];
-        if self.newton.blocks.count() <= MOST_BLOCKS {
+        let searches = self.limits.searches;
+        if searches {
+            wanted.extend(self.newton.record_search(&mut recording));
+        } else if self.newton.blocks.count() <= MOST_BLOCKS {
             wanted.push(self.newton.record_momenta(self.row_sums, &mut recording));
         }
         let mut read = self.engine.run(&recording, &wanted)?;
         let solve = Solve::from_words(&read[0]);
-        self.momenta = (wanted.len() > 1).then(|| read.swap_remove(1));
+        if searches {
+            self.searched = self.newton.search(&mut read[1..]);
+        } else {
+            self.momenta = (wanted.len() > 1).then(|| read.swap_remove(1));
+        }
         self.left = self.limits.max_iterations.saturating_sub(solve.iterations as usize);
         Ok(solve)
     }
@@ -129,10 +138,9 @@ impl<E: Engine> Rounds<'_, E> {
             } else {
                 let made = solve.iterations as usize - self.made;
                 let norms = [solve.norm, solve.reached, solve.goal].map(f64::from);
-                let most = (MOST_WORK / self.newton.nodes.max(1)).clamp(FIRST_BATCH, MAX_BATCH);
                 let wanted = |left: f64| ((CAUTION * left).ceil() as usize).saturating_add(SPARE);
                 self.batch = iterations_left(made, norms)
-                    .map_or(FIRST_BATCH, |left| wanted(left).clamp(MIN_BATCH, most));
+                    .map_or(FIRST_BATCH, |left| wanted(left).clamp(MIN_BATCH, MAX_BATCH));
             }
             solve = self.run(Recording::default())?;
         }
@@ -149,9 +157,10 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         let Some(newton) = &mut self.newton else { return Ok(NOTHING) };
         newton.is_solved = true;
         newton.momenta = None;
+        newton.change_trial();
         newton.spring_sums = newton.blocks.spring_forces(springs.springs);
         let (iterate, quantum) = (newton.vectors.iterate, newton.grid.quantum);
-        let mut recording = Recording::default();
+        let mut recording = take(&mut newton.pending);
         newton.record_before(&mut recording);
         self.record_preconditioner(springs, iterate, quantum, &mut recording)?;
         let (Some(newton), Some(recorder), Some(assembly)) =
@@ -175,6 +184,7 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         newton.record_guesses(recorder, &mut recording);
         newton.outside(recorder).record_residual(0, &mut recording);
         newton.record_norm(recorder, settle::START, 0, limits, &mut recording);
+        let before = newton.iterations.get(&newton.place);
         let mut rounds = Rounds {
             engine: &mut self.engine,
             newton,
@@ -182,13 +192,18 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
             limits,
             row_sums: assembly.buffers.row_sums(),
             momenta: None,
+            searched: None,
             left: limits.max_iterations,
             recorded: 0,
             made: 0,
-            batch: FIRST_BATCH,
+            batch: before.map_or(FIRST_BATCH, |[a, b]| (*a.max(b) + SPARE).clamp(MIN_BATCH, MAX_BATCH)),
         };
         let solved = rounds.solve(recording)?;
-        newton.momenta = rounds.momenta;
+        (newton.momenta, newton.searched) = (rounds.momenta, rounds.searched);
+        let made = solved.info.iterations;
+        let known = newton.iterations.entry(newton.place);
+        known.and_modify(|[before, last]| (*before, *last) = (*last, made)).or_insert([made; 2]);
+        newton.place += 1;
         Ok(solved)
     }
 }

@@ -195,8 +195,8 @@ fn an_iteration_moves_no_vector() {
     solver.begin_target(&target).expect("runs");
     let iterate = |solver: &mut ConjugateGradients<Counting>| {
         solver.linearize(false).expect("runs");
-        let solved =
-            solver.solve(&fixture.springs(), &SolveLimits { tolerance: 1e-2, ..LIMITS }).expect("runs");
+        let limits = SolveLimits { tolerance: 1e-2, searches: false, ..LIMITS };
+        let solved = solver.solve(&fixture.springs(), &limits).expect("runs");
         let mut sums = Vec::new();
         solver.component_residuals(&mut sums).expect("runs");
         solver.translate(&vec![Vector::new(1e-6, 0.0, 0.0); sums.len()]).expect("runs");
@@ -220,8 +220,10 @@ fn an_iteration_moves_no_vector() {
         engine.written,
         engine.read
     );
-    assert_eq!((engine.runs, engine.waits), (4 + batches, 1 + batches));
-    assert!(engine.written < 400 && engine.read < 2000, "{} and {}", engine.written, engine.read);
+    assert_eq!((engine.runs, engine.waits), (1 + batches, 1 + batches));
+    // The trial of a small model is read as a whole.
+    let read = engine.read - 16 * fixture.free.len();
+    assert!(engine.written < 400 && read < 2000, "{} and {read}", engine.written);
 }
 
 /// Solves for what is inside of solids take turns with those of the whole: their patches and groups are kept.
@@ -267,9 +269,13 @@ fn an_iterate_is_written_once_at_most() {
         let written_for = |iterate: &[Vector]| {
             let mut solver = solver(Counting::default(), &fixture);
             solver.begin_step(&fixture.terms.as_step()).expect("runs");
+            let vectors = solver.newton.as_ref().expect("one").vectors;
+            read(&mut solver, vectors.start);
             let before = solver.engine().written;
             let watched = fixture.begin_target(&mut solver, iterate);
+            // Buffers for watched nodes are new there.
             let vectors = solver.newton.as_ref().expect("one").vectors;
+            read(&mut solver, vectors.iterate);
             let written = solver.engine().written - before;
             for buffer in [vectors.iterate, vectors.target_start] {
                 let words = &solver.engine().twins.words_of(buffer)[..4 * nodes];

@@ -89,11 +89,13 @@ impl Vectors {
         })
     }
 
+    /// Whether there is room for so many watched nodes.
+    pub fn can_watch<E: Engine>(&self, engine: &E, watched: usize) -> bool {
+        engine.words(self.seen) >= 6 * watched
+    }
+
     /// Makes room for so many watched nodes.
     pub fn watch<E: Engine>(&mut self, engine: &mut E, watched: usize) -> Result<(), GpuError> {
-        if engine.words(self.seen) >= 6 * watched {
-            return Ok(());
-        }
         let before = [self.watched, self.seen, self.seen_at_reference, self.forces];
         before.into_iter().for_each(|buffer| engine.free(buffer));
         let room = watched + watched / 2;

@@ -65,12 +65,6 @@ pub trait NewtonBackend: Debug + Send {
     /// What the backend fails of.
     fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, NewtonBackendError>;
 
-    /// Returns to the iterate that [`Self::begin_target`] has set, and as it does.
-    ///
-    /// # Errors
-    /// What the backend fails of.
-    fn begin_again(&mut self) -> Result<Watched, NewtonBackendError>;
-
     /// Computes gradient and matrix of the bodies at the iterate. `absolute` says whether negative curvatures
     /// change their sign; otherwise they are set to zero.
     ///
@@ -199,7 +193,7 @@ pub struct NewtonTarget<'a> {
 /// Positions of the watched nodes [m], in their order.
 pub type Watched = Vec<Vector>;
 
-/// When a solve ends.
+/// When a solve ends, and what follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveLimits {
     /// Residual relative to b, or to the root of `min_scale` if that is larger [1].
@@ -210,6 +204,8 @@ pub struct SolveLimits {
     pub min_scale: f64,
     /// Largest number of iterations.
     pub max_iterations: usize,
+    /// Whether a search along the step begins next, without translations.
+    pub searches: bool,
 }
 
 /// How a solve ended.

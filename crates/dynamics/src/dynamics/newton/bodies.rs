@@ -48,12 +48,15 @@ pub trait Bodies: Send {
     fn inertial_at_ends(&self) -> Vec<Vector>;
 
     /// Solves for the step, with linearized springs added to gradient and matrix. The system has independent
-    /// `parts`.
-    fn solve(&mut self, springs: &LinearSprings, parts: &Parts, limits: &Limits) -> Answer<LinearSolve>;
-
-    /// Translates each of the `groups` of components, all of whose nodes are free, so that its linear
-    /// momentum in its free directions is conserved whatever the error of the solve.
-    fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()>;
+    /// `parts`. Then translates each of the `groups` of components, all of whose nodes are free, so that its
+    /// linear momentum in its free directions is conserved whatever the error of the solve.
+    fn solve(
+        &mut self,
+        springs: &LinearSprings,
+        parts: &Parts,
+        limits: &Limits,
+        groups: &[Group],
+    ) -> Answer<LinearSolve>;
 
     /// Begins a search along the step: places the trial at a length of 0, from which changes of energy count.
     /// The next trial is that at full length.

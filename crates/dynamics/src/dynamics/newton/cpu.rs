@@ -71,8 +71,14 @@ impl Bodies for CpuBodies<'_> {
         self.gather(|n| if work.free[n] { self.step.inertial[n] } else { work.x[n] + work.imposed[n] })
     }
 
-    fn solve(&mut self, springs: &LinearSprings, parts: &Parts, limits: &Limits) -> Answer<LinearSolve> {
-        let Self { model, step, work, .. } = self;
+    fn solve(
+        &mut self,
+        springs: &LinearSprings,
+        parts: &Parts,
+        limits: &Limits,
+        groups: &[Group],
+    ) -> Answer<LinearSolve> {
+        let Self { model, params, step, work, .. } = self;
         if !springs.is_empty() {
             let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
             gradient.for_each(|(node, gradient)| *gradient += springs.gradient(node));
@@ -107,16 +113,11 @@ impl Bodies for CpuBodies<'_> {
         let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guesses..];
         let problem = Problem { system: &system, parts, positions: &work.x, b: &work.right_side };
         let info = work.solver.solve(&problem, guesses, limits, &mut work.step);
-        Ok(LinearSolve { info, scales: work.solver.scales().to_vec() })
-    }
-
-    fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()> {
-        let Self { model, params, step, work, .. } = self;
         let inertia = Inertia::new(params, step);
         for group in groups {
             shift_group(model, group, &inertia, work.solver.residual(), &mut work.step);
         }
-        Ok(())
+        Ok(LinearSolve { info, scales: work.solver.scales().to_vec() })
     }
 
     fn place(&mut self, length: f64) -> Answer<BodyEnergies> {

@@ -154,23 +154,27 @@ impl Bodies for DeviceBodies<'_> {
         self.beginning.watched.iter().zip(&self.iterate[1]).map(position).collect()
     }
 
-    fn solve(&mut self, springs: &LinearSprings, parts: &Parts, limits: &Limits) -> Answer<LinearSolve> {
+    fn solve(
+        &mut self,
+        springs: &LinearSprings,
+        parts: &Parts,
+        limits: &Limits,
+        groups: &[Group],
+    ) -> Answer<LinearSolve> {
         let limits = SolveLimits {
             tolerance: limits.tolerance,
             own_tolerance: limits.own_tolerance,
             min_scale: limits.min_scale_of_whole(),
             max_iterations: limits.max_iterations,
+            searches: groups.is_empty(),
         };
         let solved = self.backend.solve(&for_device(springs), &limits)?;
         if solved.stalled {
             return Err(Lost::Stalled);
         }
-        Ok(LinearSolve { info: solved.info, scales: vec![solved.scale; parts.count()] })
-    }
-
-    fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()> {
+        let solve = LinearSolve { info: solved.info, scales: vec![solved.scale; parts.count()] };
         if groups.is_empty() {
-            return Ok(());
+            return Ok(solve);
         }
         let mut residuals = Vec::new();
         self.backend.component_residuals(&mut residuals)?;
@@ -181,7 +185,8 @@ impl Bodies for DeviceBodies<'_> {
             let shift = translation(group, &total, &residual);
             group.members.iter().for_each(|&c| translations[c] = shift);
         }
-        Ok(self.backend.translate(&translations)?)
+        self.backend.translate(&translations)?;
+        Ok(solve)
     }
 
     fn begin_search(&mut self) -> Answer<BodyEnergies> {

@@ -35,9 +35,9 @@ impl Newton<'_> {
             min_scales: self.min_scales(&parts),
             max_iterations: self.params.newton.cg_max_iterations,
         };
-        let solved = self.bodies.solve(springs, &parts, &limits)?;
+        let groups = free_groups(self.model, self.repulsion, self.free);
+        let solved = self.bodies.solve(springs, &parts, &limits, &groups)?;
         self.note_scales(&parts, &solved.scales);
-        self.bodies.restore_momentum(&free_groups(self.model, self.repulsion, self.free))?;
         let mut info = NewtonInfo { iterations: 1, cg: solved.info, ..NewtonInfo::default() };
         self.search_line(&mut info)?;
         self.repulsion.majorizes_friction = info.step_length < 1.0;

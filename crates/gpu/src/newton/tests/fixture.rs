@@ -17,7 +17,7 @@ pub const DT: f64 = 0.02;
 
 /// A tight solve.
 pub const LIMITS: SolveLimits =
-    SolveLimits { tolerance: 1e-5, own_tolerance: 0.0, min_scale: 0.0, max_iterations: 2000 };
+    SolveLimits { tolerance: 1e-5, own_tolerance: 0.0, min_scale: 0.0, max_iterations: 2000, searches: true };
 
 /// A time step, the start of a target in it, and springs.
 pub struct Fixture {
@@ -273,8 +273,9 @@ impl Fixture {
 
 /// The content of a buffer of vectors.
 pub fn read<E: Engine + Debug + Send>(solver: &mut ConjugateGradients<E>, buffer: BufferId) -> Vec<Vector> {
-    let words = 4 * solver.newton.as_ref().expect("a model").nodes;
-    let read = solver.engine.run(&Recording::default(), &[(buffer, words)]).expect("runs");
+    let newton = solver.newton.as_mut().expect("a model");
+    let pending = std::mem::take(&mut newton.pending);
+    let read = solver.engine.run(&pending, &[(buffer, 4 * newton.nodes)]).expect("runs");
     let number = |word: u32| f64::from(f32::from_bits(word));
     read[0].chunks_exact(4).map(|w| Vector::new(number(w[0]), number(w[1]), number(w[2]))).collect()
 }
