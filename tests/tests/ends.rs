@@ -50,7 +50,7 @@ impl Engine for Faulty {
     fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
         let buffer = self.engine.buffer(label, words)?;
         match label {
-            "control" => self.control = Some(buffer),
+            "control at the end" => self.control = Some(buffer),
             "pairs in range" => self.near = Some(buffer),
             "positions" => self.positions = Some(buffer),
             _ => {}
