@@ -5,6 +5,8 @@
 
 struct Params {
     vertices: u32,
+    // Smallest decrease of the distance to the target that counts as progress.
+    progress: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -17,9 +19,6 @@ struct Params {
 @group(0) @binding(7) var<storage, read_write> control: Control;
 @group(0) @binding(8) var<storage, read_write> late: array<Late>;
 
-// Smallest decrease of the distance to the target that counts as progress, in local edge lengths.
-const LEAST_PROGRESS: f32 = 1e-3;
-
 const LAG: u32 = 0u;
 const FREE_REMAINING: u32 = 1u;
 const FREE_MOVE: u32 = 2u;
@@ -30,9 +29,9 @@ const WORDS: u32 = 6u;
 
 var<workgroup> shared_overflow: u32;
 
-fn note_progress(v: u32, left: f32, edge: f32) {
+fn note_progress(v: u32, left: f32) {
     var idle_steps = late[v].idle_steps + 1u;
-    if left < late[v].smallest - LEAST_PROGRESS * edge {
+    if left < late[v].smallest - params.progress {
         late[v].smallest = left;
         idle_steps = 0u;
     }
@@ -61,7 +60,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         let left = (1.0 - alpha) * length;
         if (vertex.flags & PRESCRIBED) != 0u {
             largest[LAG] = max(largest[LAG], bitcast<u32>(left));
-            note_progress(v, left, vertex.edge);
+            note_progress(v, left);
         } else {
             largest[FREE_REMAINING] = max(largest[FREE_REMAINING], bitcast<u32>(left));
             largest[FREE_MOVE] = max(largest[FREE_MOVE], bitcast<u32>(alpha * length));

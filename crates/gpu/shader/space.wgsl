@@ -1,7 +1,7 @@
 // Parts: types, closest, weights, pair.
 //
-// Desired distance and minimum separation of candidates that are new, and the minimum separation of all for the forward
-// step.
+// Desired distance and minimum separation of candidates that are new or come into range, and the minimum separation of all
+// for the forward step.
 //
 // The desired distance of two elements of one connected component is at most half of their rest distance: otherwise it
 // would tear a fine mesh apart. A pair that starts closer opens by at most `growth` in a call. Where the target knows the
@@ -115,13 +115,15 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let count = min(atomicLoad(&control.candidates), params.capacity);
     for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
-        if states[c].desired < 0.0 {
+        let is_new = states[c].desired < 0.0;
+        if is_new || (states[c].is_far != 0u && separations[c].distance <= states[c].range) {
             // What the pair carries at the start of the call stays (resume.wgsl).
             let first = first_state(candidates[c], separations[c]);
             states[c].desired = first.desired;
             states[c].min_separation = first.min_separation;
             states[c].range = first.range;
         }
+        states[c].is_far = u32(separations[c].distance > states[c].range);
         separations[c].min_separation = states[c].min_separation;
         separations[c].wanted = states[c].desired;
     }

@@ -116,16 +116,22 @@ pub struct Settings {
     pub coarse_correction: bool,
     /// Share of a gap that a step may use up.
     pub damping: f64,
+    /// Longest travel of a vertex in a step, in local edge lengths; at most 1.
+    pub longest_travel: f64,
+    /// Smallest radius of a trust region, likewise.
+    pub smallest_radius: f64,
+    /// Smallest decrease of a prescribed vertex's distance to its target that counts as progress [m].
+    pub progress: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            sweeps: 5,
-            cluster_sweeps: 3,
-            bucket_sweeps: 3,
+            sweeps: 8,
+            cluster_sweeps: 2,
+            bucket_sweeps: 2,
             bucket_vertices: 128,
-            polish_sweeps: 5,
+            polish_sweeps: 8,
             polish_distance: 0.0,
             polish_stretch: 1.01,
             edge_proximal: 0.1,
@@ -140,6 +146,9 @@ impl Default for Settings {
             guarded_stretch: 1.0125,
             coarse_correction: true,
             damping: 0.9,
+            longest_travel: 0.35,
+            smallest_radius: 0.1,
+            progress: 0.0,
         }
     }
 }
@@ -320,6 +329,7 @@ struct StepLengths {
     /// By how much the rows of a call ask a small gap to grow.
     growth: f32,
     damping: f32,
+    progress: f32,
 }
 
 impl<E: Engine> Collision<E> {
@@ -359,9 +369,6 @@ impl<E: Engine> Collision<E> {
         let room = extent(positions).max(extent(rest)).max(4.0 * largest);
         Ok(Grid::around(positions, room, lengths.min_separation)?)
     }
-
-    /// Longest travel of a vertex in a step, in local edge lengths.
-    pub const LONGEST_TRAVEL: f64 = record::LONGEST_TRAVEL as f64;
 
     /// Prepares the scene on a grid, without [positions](Self::place). The
     /// elements are ordered in space by `order`, any positions that are typical of the scene [m].
@@ -446,6 +453,7 @@ impl<E: Engine> Collision<E> {
             min_separation: grid.length(lengths.min_separation).next_up(),
             growth: f32::MAX,
             damping: settings.damping as f32,
+            progress: (settings.progress / grid.quantum()) as f32,
         };
         Ok(Self {
             engine,

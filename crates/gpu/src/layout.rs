@@ -191,7 +191,8 @@ pub struct PairState {
     pub min_separation: f32,
     /// Distance within which the pair can have a row.
     pub range: f32,
-    pub padding: u32,
+    /// 1: the pair was out of range in the last step.
+    pub is_far: u32,
 }
 
 #[cfg(test)]
@@ -203,7 +204,7 @@ impl PairState {
         desired: -1.0,
         min_separation: 0.0,
         range: 0.0,
-        padding: 0,
+        is_far: 0,
     };
 }
 

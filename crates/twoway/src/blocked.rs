@@ -16,7 +16,7 @@ use bowknot_geometry::Point;
 const MAX_STEPS_WITHOUT_PROGRESS: usize = 6;
 
 /// Smallest decrease of the distance to the target that counts as progress, in mean edge lengths.
-const MIN_PROGRESS: f64 = 1e-3;
+pub const MIN_PROGRESS: f64 = 1e-3;
 
 /// A prescribed vertex that has not arrived.
 #[derive(Clone, Copy, Debug)]

@@ -9,10 +9,6 @@ use bowknot_constraints::EdgeLimits;
 use bowknot_geometry::Vector;
 use bowknot_lcp as lcp;
 
-/// Factor on the sweeps of calls in which rows alone hold some vertices, beside a target that knows its other
-/// contacts. More: piles stand steeper, as they should. Fewer: less time.
-pub const UNKNOWN_SWEEPS: usize = 4;
-
 /// Number of sweeps between two checks of the stretch while polishing.
 const POLISH_BATCH: usize = 8;
 
@@ -121,7 +117,7 @@ fn sweep_and_polish<R>(
     stretch: impl Fn(&R) -> f64,
 ) -> Result<(), lcp::LcpError> {
     let params = &scene.params().solver.backward;
-    let mut sweeps = if state.call.has_unknown() { UNKNOWN_SWEEPS * params.sweeps } else { params.sweeps };
+    let mut sweeps = params.sweeps_of(&state.call);
     batch(rows, sweeps)?;
     if state.remaining < params.polish_distance * scene.lengths().edge {
         let allowed = 1.0 + 0.5 * scene.params().solver.stop.stretch_tolerance;

@@ -78,7 +78,8 @@ struct PairState {
     desired: f32,
     min_separation: f32,
     range: f32,
-    padding: u32,
+    // 1: the pair was out of range in the last step.
+    is_far: u32,
 }
 
 struct CarriedState {

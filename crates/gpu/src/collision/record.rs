@@ -7,11 +7,9 @@ use crate::kernels::decide::{AFTER_SEARCH, AFTER_STEP};
 use crate::layout::Block;
 use crate::recording::{Phase, Recording};
 
-/// Longest travel of a vertex in a step, by how much a trust region is larger than half of the path, and its smallest
-/// radius, in local edge lengths; times the [factor](Collision) of the call.
-pub(super) const LONGEST_TRAVEL: f32 = 0.35;
+/// By how much a trust region is larger than half of the path, in local edge lengths times the [factor](Collision) of the
+/// call.
 const SLACK: f32 = 0.05;
-const SMALLEST_RADIUS: f32 = 0.1;
 
 impl<E: Engine> Collision<E> {
     /// The dispatches of a step, in order. `first`: it is the first one of its submission, of which so many dispatches
@@ -80,7 +78,7 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &kernels::PLAN,
             &[b.positions, b.aims, b.vertices, b.paths, b.group_caps],
-            kernels::plan::Params { vertices, longest: self.travel * LONGEST_TRAVEL },
+            kernels::plan::Params { vertices, longest: self.travel * self.settings.longest_travel as f32 },
             self.sizes.vertices,
         );
         recording.dispatch(
@@ -103,7 +101,7 @@ impl<E: Engine> Collision<E> {
                 vertices,
                 all: u32::from(self.fresh || self.shrunk),
                 slack: self.travel * SLACK,
-                smallest: self.travel * SMALLEST_RADIUS,
+                smallest: self.travel * self.settings.smallest_radius as f32,
             },
             self.sizes.vertices,
         );
@@ -164,7 +162,7 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &kernels::ADVANCE,
             &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control, b.late],
-            kernels::advance::Params { vertices },
+            kernels::advance::Params { vertices, progress: self.lengths.progress },
             self.sizes.vertices,
         );
         recording.dispatch(

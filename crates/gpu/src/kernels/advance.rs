@@ -31,7 +31,6 @@ pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const WORDS: u32 = 6u32;
-pub const LEAST_PROGRESS: f32 = 0.001f32;
 pub const LAG: u32 = 0u32;
 pub const FREE_REMAINING: u32 = 1u32;
 pub const FREE_MOVE: u32 = 2u32;
@@ -112,6 +111,7 @@ impl Stored for Vertex {
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct Params {
     pub vertices: u32,
+    pub progress: f32,
 }
 
 struct Memory<'a> {
@@ -190,12 +190,13 @@ pub fn find_most(m: &mut Memory<'_>, thread_a0: [u32; 256], own_a1: [[u32; 6]; 2
     }
 }
 
-pub fn note_progress(m: &mut Memory<'_>, v_a0: u32, left_a1: f32, edge_a2: f32) {
-    let _e6 = <u32>::load(m.late, 2 * (v_a0 as usize) + 1);
+pub fn note_progress(m: &mut Memory<'_>, v_a0: u32, left_a1: f32) {
+    let _e5 = <u32>::load(m.late, 2 * (v_a0 as usize) + 1);
     let mut idle_steps_v0: u32;
-    idle_steps_v0 = _e6.wrapping_add(1u32);
-    let _e13 = <f32>::load(m.late, 2 * (v_a0 as usize));
-    if (left_a1 < (_e13 - (0.001f32 * edge_a2))) {
+    idle_steps_v0 = _e5.wrapping_add(1u32);
+    let _e12 = <f32>::load(m.late, 2 * (v_a0 as usize));
+    let _e15 = m.params.progress;
+    if (left_a1 < (_e12 - _e15)) {
         Stored::store(left_a1, m.late, 2 * (v_a0 as usize));
         idle_steps_v0 = 0u32;
     }
@@ -205,7 +206,7 @@ pub fn note_progress(m: &mut Memory<'_>, v_a0: u32, left_a1: f32, edge_a2: f32) 
 
 pub fn main(m: &mut Memory<'_>, group: u32) {
     let mut largest_v0: [[u32; 6]; 256] = [[0u32; 6]; 256];
-    let mut _e134: [[u32; 6]; 256] = [[0u32; 6]; 256];
+    let mut _e133: [[u32; 6]; 256] = [[0u32; 6]; 256];
     for t in 0..256 {
         if (([t as u32, 0, 0])[0] == 0u32) {
             let _e8 = <u32>::load(m.control, 1);
@@ -251,62 +252,62 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
                         let _e65 = largest_v0[t][0];
                         largest_v0[t][0] = _e65.max(left_e57.to_bits());
                         let _e68 = v_v1;
-                        note_progress(m, _e68, left_e57, (vertex_e25).edge);
+                        note_progress(m, _e68, left_e57);
                     } else {
-                        let _e72 = largest_v0[t][1];
-                        largest_v0[t][1] = _e72.max(left_e57.to_bits());
-                        let _e77 = largest_v0[t][2];
-                        let _e78 = alpha_v2;
-                        largest_v0[t][2] = _e77.max((_e78 * length_e53).to_bits());
+                        let _e71 = largest_v0[t][1];
+                        largest_v0[t][1] = _e71.max(left_e57.to_bits());
+                        let _e76 = largest_v0[t][2];
+                        let _e77 = alpha_v2;
+                        largest_v0[t][2] = _e76.max((_e77 * length_e53).to_bits());
                     }
-                    let _e84 = largest_v0[t][3];
-                    let _e85 = alpha_v2;
-                    largest_v0[t][3] = _e84.max((_e85 * length_e53).to_bits());
-                    let _e89 = alpha_v2;
-                    let _e91 = v_v1;
-                    let _e94 = <f32>::load(m.paths, 4 * (_e91 as usize) + 3);
-                    if (_e89 >= _e94) {
-                        let _e98 = largest_v0[t][4];
-                        largest_v0[t][4] = _e98.max(left_e57.to_bits());
+                    let _e83 = largest_v0[t][3];
+                    let _e84 = alpha_v2;
+                    largest_v0[t][3] = _e83.max((_e84 * length_e53).to_bits());
+                    let _e88 = alpha_v2;
+                    let _e90 = v_v1;
+                    let _e93 = <f32>::load(m.paths, 4 * (_e90 as usize) + 3);
+                    if (_e88 >= _e93) {
+                        let _e97 = largest_v0[t][4];
+                        largest_v0[t][4] = _e97.max(left_e57.to_bits());
                         if (((vertex_e25).flags & 2u32) != 0u32) {
-                            let _e108 = largest_v0[t][5];
-                            largest_v0[t][5] = _e108.max(left_e57.to_bits());
+                            let _e107 = largest_v0[t][5];
+                            largest_v0[t][5] = _e107.max(left_e57.to_bits());
                         }
                     }
-                    let _e111 = alpha_v2;
-                    if (_e111 == 1.0f32) {
-                        let _e115 = v_v1;
-                        let _e118 = v_v1;
-                        let _e120 = <[i32; 4]>::load(m.targets, 4 * (_e118 as usize));
-                        Stored::store(_e120, m.positions, 4 * (_e115 as usize));
+                    let _e110 = alpha_v2;
+                    if (_e110 == 1.0f32) {
+                        let _e114 = v_v1;
+                        let _e117 = v_v1;
+                        let _e119 = <[i32; 4]>::load(m.targets, 4 * (_e117 as usize));
+                        Stored::store(_e119, m.positions, 4 * (_e114 as usize));
                     } else {
-                        let _e122 = v_v1;
-                        let _e124 = alpha_v2;
-                        let _e127 = zip(position_e44, displacement_e51.map(|x| (x * _e124)).map(|x| (x as i32)), |x, y| x.wrapping_add(y));
-                        Stored::store([(_e127)[0], (_e127)[1], (_e127)[2], 0i32], m.positions, 4 * (_e122 as usize));
+                        let _e121 = v_v1;
+                        let _e123 = alpha_v2;
+                        let _e126 = zip(position_e44, displacement_e51.map(|x| (x * _e123)).map(|x| (x as i32)), |x, y| x.wrapping_add(y));
+                        Stored::store([(_e126)[0], (_e126)[1], (_e126)[2], 0i32], m.positions, 4 * (_e121 as usize));
                     }
                 }
             }
-            let _e130 = v_v1;
-            v_v1 = _e130.wrapping_add(16776960u32);
+            let _e129 = v_v1;
+            v_v1 = _e129.wrapping_add(16776960u32);
         }
-        _e134[t] = largest_v0[t];
+        _e133[t] = largest_v0[t];
     }
-    find_most(m, std::array::from_fn::<_, 256, _>(|t| ([t as u32, 0, 0])[0]), std::array::from_fn::<_, 256, _>(|t| _e134[t]));
+    find_most(m, std::array::from_fn::<_, 256, _>(|t| ([t as u32, 0, 0])[0]), std::array::from_fn::<_, 256, _>(|t| _e133[t]));
     for t in 0..256 {
         if (([t as u32, 0, 0])[0] == 0u32) {
-            let _e142 = m.most[0];
-            { let old = <u32>::load(m.control, 5); let new = old.max(_e142); Stored::store(new, m.control, 5); old };
-            let _e148 = m.most[256];
-            { let old = <u32>::load(m.control, 3); let new = old.max(_e148); Stored::store(new, m.control, 3); old };
-            let _e154 = m.most[512];
-            { let old = <u32>::load(m.control, 7); let new = old.max(_e154); Stored::store(new, m.control, 7); old };
-            let _e160 = m.most[768];
-            { let old = <u32>::load(m.control, 6); let new = old.max(_e160); Stored::store(new, m.control, 6); old };
-            let _e166 = m.most[1024];
-            { let old = <u32>::load(m.control, 8); let new = old.max(_e166); Stored::store(new, m.control, 8); old };
-            let _e172 = m.most[1280];
-            { let old = <u32>::load(m.control, 4); let new = old.max(_e172); Stored::store(new, m.control, 4); old };
+            let _e141 = m.most[0];
+            { let old = <u32>::load(m.control, 5); let new = old.max(_e141); Stored::store(new, m.control, 5); old };
+            let _e147 = m.most[256];
+            { let old = <u32>::load(m.control, 3); let new = old.max(_e147); Stored::store(new, m.control, 3); old };
+            let _e153 = m.most[512];
+            { let old = <u32>::load(m.control, 7); let new = old.max(_e153); Stored::store(new, m.control, 7); old };
+            let _e159 = m.most[768];
+            { let old = <u32>::load(m.control, 6); let new = old.max(_e159); Stored::store(new, m.control, 6); old };
+            let _e165 = m.most[1024];
+            { let old = <u32>::load(m.control, 8); let new = old.max(_e165); Stored::store(new, m.control, 8); old };
+            let _e171 = m.most[1280];
+            { let old = <u32>::load(m.control, 4); let new = old.max(_e171); Stored::store(new, m.control, 4); old };
         }
     }
 }

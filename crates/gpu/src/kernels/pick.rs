@@ -125,7 +125,7 @@ pub struct PairState {
     pub desired: f32,
     pub min_separation: f32,
     pub range: f32,
-    pub padding: u32,
+    pub is_far: u32,
 }
 
 impl PairState {
@@ -135,7 +135,7 @@ impl PairState {
         desired: 0.0f32,
         min_separation: 0.0f32,
         range: 0.0f32,
-        padding: 0u32,
+        is_far: 0u32,
     };
 }
 
@@ -149,7 +149,7 @@ impl Stored for PairState {
             desired: <f32>::load(words, at + 4),
             min_separation: <f32>::load(words, at + 5),
             range: <f32>::load(words, at + 6),
-            padding: <u32>::load(words, at + 7),
+            is_far: <u32>::load(words, at + 7),
         }
     }
 
@@ -159,7 +159,7 @@ impl Stored for PairState {
         self.desired.store(words, at + 4);
         self.min_separation.store(words, at + 5);
         self.range.store(words, at + 6);
-        self.padding.store(words, at + 7);
+        self.is_far.store(words, at + 7);
     }
 }
 

@@ -197,7 +197,7 @@ pub struct PairState {
     pub desired: f32,
     pub min_separation: f32,
     pub range: f32,
-    pub padding: u32,
+    pub is_far: u32,
 }
 
 impl PairState {
@@ -207,7 +207,7 @@ impl PairState {
         desired: 0.0f32,
         min_separation: 0.0f32,
         range: 0.0f32,
-        padding: 0u32,
+        is_far: 0u32,
     };
 }
 
@@ -221,7 +221,7 @@ impl Stored for PairState {
             desired: <f32>::load(words, at + 4),
             min_separation: <f32>::load(words, at + 5),
             range: <f32>::load(words, at + 6),
-            padding: <u32>::load(words, at + 7),
+            is_far: <u32>::load(words, at + 7),
         }
     }
 
@@ -231,7 +231,7 @@ impl Stored for PairState {
         self.desired.store(words, at + 4);
         self.min_separation.store(words, at + 5);
         self.range.store(words, at + 6);
-        self.padding.store(words, at + 7);
+        self.is_far.store(words, at + 7);
     }
 }
 
@@ -704,7 +704,7 @@ pub fn first_state(m: &mut Memory<'_>, candidate_a0: Candidate, separation_a1: S
     let _e187 = desired_v3;
     let _e188 = least_v4;
     let _e189 = range_v1;
-    return PairState { friction: _e186, multiplier: 0.0f32, desired: _e187, min_separation: _e188, range: _e189, padding: 0u32 };
+    return PairState { friction: _e186, multiplier: 0.0f32, desired: _e187, min_separation: _e188, range: _e189, is_far: 0u32 };
 }
 
 pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
@@ -735,31 +735,58 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
             {
                 let _e27 = c_v1;
                 let _e30 = <f32>::load(m.states, 8 * (_e27 as usize) + 4);
-                if (_e30 < 0.0f32) {
-                    let _e34 = c_v1;
-                    let _e36 = <Candidate>::load(m.candidates, 2 * (_e34 as usize));
-                    let _e38 = c_v1;
-                    let _e40 = <Separation>::load(m.separations, 12 * (_e38 as usize));
-                    let first_e41 = first_state(m, _e36, _e40);
-                    let _e43 = c_v1;
-                    Stored::store((first_e41).desired, m.states, 8 * (_e43 as usize) + 4);
-                    let _e48 = c_v1;
-                    Stored::store((first_e41).min_separation, m.states, 8 * (_e48 as usize) + 5);
-                    let _e53 = c_v1;
-                    Stored::store((first_e41).range, m.states, 8 * (_e53 as usize) + 6);
+                let is_new_e32 = (_e30 < 0.0f32);
+                let mut local_v2: bool;
+                if (!is_new_e32) {
+                    let _e37 = c_v1;
+                    let _e40 = <u32>::load(m.states, 8 * (_e37 as usize) + 7);
+                    let mut local_v3: bool;
+                    if (_e40 != 0u32) {
+                        let _e46 = c_v1;
+                        let _e49 = <f32>::load(m.separations, 12 * (_e46 as usize) + 6);
+                        let _e51 = c_v1;
+                        let _e54 = <f32>::load(m.states, 8 * (_e51 as usize) + 6);
+                        local_v3 = (_e49 <= _e54);
+                    } else {
+                        local_v3 = false;
+                    }
+                    let _e57 = local_v3;
+                    local_v2 = _e57;
+                } else {
+                    local_v2 = true;
                 }
-                let _e58 = c_v1;
-                let _e62 = c_v1;
-                let _e65 = <f32>::load(m.states, 8 * (_e62 as usize) + 5);
-                Stored::store(_e65, m.separations, 12 * (_e58 as usize) + 7);
-                let _e67 = c_v1;
-                let _e71 = c_v1;
-                let _e74 = <f32>::load(m.states, 8 * (_e71 as usize) + 4);
-                Stored::store(_e74, m.separations, 12 * (_e67 as usize) + 8);
+                let _e59 = local_v2;
+                if _e59 {
+                    let _e61 = c_v1;
+                    let _e63 = <Candidate>::load(m.candidates, 2 * (_e61 as usize));
+                    let _e65 = c_v1;
+                    let _e67 = <Separation>::load(m.separations, 12 * (_e65 as usize));
+                    let first_e68 = first_state(m, _e63, _e67);
+                    let _e70 = c_v1;
+                    Stored::store((first_e68).desired, m.states, 8 * (_e70 as usize) + 4);
+                    let _e75 = c_v1;
+                    Stored::store((first_e68).min_separation, m.states, 8 * (_e75 as usize) + 5);
+                    let _e80 = c_v1;
+                    Stored::store((first_e68).range, m.states, 8 * (_e80 as usize) + 6);
+                }
+                let _e85 = c_v1;
+                let _e89 = c_v1;
+                let _e92 = <f32>::load(m.separations, 12 * (_e89 as usize) + 6);
+                let _e94 = c_v1;
+                let _e97 = <f32>::load(m.states, 8 * (_e94 as usize) + 6);
+                Stored::store(u32::from((_e92 > _e97)), m.states, 8 * (_e85 as usize) + 7);
+                let _e101 = c_v1;
+                let _e105 = c_v1;
+                let _e108 = <f32>::load(m.states, 8 * (_e105 as usize) + 5);
+                Stored::store(_e108, m.separations, 12 * (_e101 as usize) + 7);
+                let _e110 = c_v1;
+                let _e114 = c_v1;
+                let _e117 = <f32>::load(m.states, 8 * (_e114 as usize) + 4);
+                Stored::store(_e117, m.separations, 12 * (_e110 as usize) + 8);
             }
         }
-        let _e75 = c_v1;
-        c_v1 = _e75.wrapping_add(8388480u32);
+        let _e118 = c_v1;
+        c_v1 = _e118.wrapping_add(8388480u32);
     }
 }
 

@@ -132,7 +132,7 @@ fn structs_lie_alike_on_both_sides() {
         offsets!(layout::NodeBox: low, deformable, high, padding),
         offsets!(layout::Candidate: kind_and_a, b),
         offsets!(layout::Separation: normal, width, weights, distance, min_separation, wanted, sine, padding_0, padding_1),
-        offsets!(layout::PairState: friction, multiplier, desired, min_separation, range, padding),
+        offsets!(layout::PairState: friction, multiplier, desired, min_separation, range, is_far),
         offsets!(layout::CarriedState: friction, multiplier, candidate, padding_0, padding_1),
         offsets!(layout::Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color, slip, coefficient,
             friction, bucket),

@@ -191,7 +191,7 @@ impl<E: Engine + Debug + Send> Device<E> {
         let call = CallInput::new(scene, positions, target, input)?;
         let stop = running.stop();
         let ends =
-            farthest_ends(scene, positions, target, stop.max_steps() as f64 * Collision::<E>::LONGEST_TRAVEL);
+            farthest_ends(scene, positions, target, stop.max_steps() as f64 * setup::longest_travel(scene));
         self.prepare_call(scene, &call, input, positions, &ends)?;
         let Self { prepared, judge, .. } = self;
         let collision = &mut prepared.as_mut().ok_or(GpuResolveError::NoEngine)?.collision;
@@ -377,7 +377,7 @@ fn fly<E: Engine>(
     course: [&[Point]; 2],
 ) -> Option<Vec<Point>> {
     let grid = collision.grid();
-    let flown = flight::fly(scene, call, course, grid.quantum(), Collision::<E>::LONGEST_TRAVEL);
+    let flown = flight::fly(scene, call, course, grid.quantum(), setup::longest_travel(scene));
     flown.filter(|flown| grid.has_room(flown))
 }
 

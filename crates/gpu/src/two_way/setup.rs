@@ -5,12 +5,11 @@ use crate::{Collision, CollisionError, Constraints, Engine, Grid, Lengths, Setti
 use bowknot_geometry::Point;
 use bowknot_twoway::constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
 use bowknot_twoway::stepper::{Bound, TrustRegionRule};
-use bowknot_twoway::{CallInput, CollisionScene, ContactSide, ResolveInput, StopRule, UNKNOWN_SWEEPS};
+use bowknot_twoway::{CallInput, CollisionScene, ContactSide, ResolveInput, StopRule};
 
-/// Sweeps of a device in place of so many on the CPU: five for eight. Each goes over buckets of rows and clusters of edges more
-/// than once, and a backward step solves its rows as well (`docs/gpu/collisions.md`).
-fn sweeps_on_device(sweeps: usize) -> usize {
-    (5 * sweeps).div_ceil(8)
+/// Longest travel of a vertex in a step, in local edge lengths.
+pub fn longest_travel(scene: &CollisionScene) -> f64 {
+    scene.params().solver.forward.trust_region_max
 }
 
 /// The scene on the engine, on a grid with room from `positions` to `ends` [m], and the grid around the positions `home`
@@ -64,14 +63,13 @@ pub fn collision<E: Engine>(
         pair_frictions: &pair_frictions,
     };
     let backward = &params.solver.backward;
-    let sweeps = if call.has_unknown() { UNKNOWN_SWEEPS * backward.sweeps } else { backward.sweeps };
     let defaults = Settings::default();
     let settings = Settings {
-        sweeps: sweeps_on_device(sweeps),
+        sweeps: backward.sweeps_of(call),
         cluster_sweeps: defaults.cluster_sweeps,
         bucket_sweeps: defaults.bucket_sweeps,
         bucket_vertices: defaults.bucket_vertices,
-        polish_sweeps: sweeps_on_device(backward.polish_sweeps),
+        polish_sweeps: backward.polish_sweeps,
         polish_distance: backward.polish_distance * scene.lengths().edge,
         polish_stretch: 1.0 + 0.5 * params.solver.stop.stretch_tolerance,
         edge_proximal: backward.edge_proximal,
@@ -86,6 +84,9 @@ pub fn collision<E: Engine>(
         guarded_stretch: bowknot_twoway::GUARDED_STRETCH,
         coarse_correction: backward.coarse_correction,
         damping: params.solver.forward.damping,
+        longest_travel: params.solver.forward.trust_region_max,
+        smallest_radius: params.solver.forward.trust_region_min,
+        progress: bowknot_twoway::MIN_PROGRESS * scene.lengths().edge,
     };
     let home_grid = Collision::<E>::grid_around(home, scene.rest(), &lengths)?;
     let grid = home_grid.for_motion(positions, ends, lengths.min_separation);
@@ -116,6 +117,11 @@ pub fn refuse_unsupported(scene: &CollisionScene) -> Result<(), GpuResolveError>
             FAST,
         ),
         (!matches!(solver.stop.rule, StopRule::Travel { .. }), "solver.stop.rule = \"clock\"", FAST),
+        (
+            solver.forward.trust_region_min.max(solver.forward.trust_region_max) > 1.0,
+            "solver.forward.trust_region_min or trust_region_max above 1",
+            FAST,
+        ),
         (scene.lengths().min_separation == 0.0, "contact.min_separation = 0", None),
     ];
     match refused.into_iter().find(|(refused, ..)| *refused) {
