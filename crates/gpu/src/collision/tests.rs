@@ -156,7 +156,8 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
             for (candidate, state) in states(&mut collision) {
                 match known.get(&candidate) {
                     Some(old) => {
-                        let expected = PairState { multiplier: state.multiplier, ..*old };
+                        let expected =
+                            PairState { multiplier: state.multiplier, is_far: state.is_far, ..*old };
                         assert_eq!(state, expected, "step {step}");
                     }
                     // The marks are far below the range of a candidate that is new.
@@ -483,9 +484,40 @@ fn targets_are_polished_near_the_end_while_edges_are_too_long() {
     assert!(!settings.polishes_after(&report(0.5 * EDGE, 1.0)));
     assert!(!settings.polishes_after(&report(2.0 * EDGE, 1.02)));
     let sweeps = [0, 1, 2, 3, 4, 70, usize::MAX].map(|polished| settings.sweeps_to_polish(polished));
-    assert_eq!(sweeps, [5, 10, 20, 40, 64, 64, 64]);
+    assert_eq!(sweeps, [8, 16, 32, 64, 64, 64, 64]);
     let settings = Settings { polish_sweeps: settings.sweeps, ..settings };
     assert!(!settings.polishes_after(&report(0.5 * EDGE, 1.02)));
+}
+
+/// Two grains that the target knows become candidates far from each other.
+#[test]
+fn distances_of_a_pair_are_set_when_it_comes_into_range() {
+    let x = [0.0, 3.0].map(|height| Point::new(0.0, 0.0, height * DELTA));
+    let target = [x[0], x[1] - 1.8 * DELTA * Vector::z()];
+    let topology = Topology::builder(2).particles([0, 1]).build().unwrap();
+    let model = CollisionModel::new(topology, vec![0; 2], vec![BodyFilter::DEFORMABLE], vec![]).unwrap();
+    let lengths = Lengths {
+        edges: &[10.0 * DELTA; 2],
+        margins: &[DELTA; 2],
+        deltas: &[DELTA; 2],
+        half_space_deltas: &[],
+        thicknesses: &[],
+        half_space_thicknesses: &[],
+        min_separation: MIN_SEPARATION,
+        edge_limits: &[],
+    };
+    let (constraints, settings) = (Constraints::default(), Settings::default());
+    let rest = x.map(|x| x * 10.0);
+    let mut collision =
+        Collision::new(TwinEngine::new(), &model, &x, &rest, &lengths, &constraints, &settings).unwrap();
+    collision.begin(&Call { known: &[true; 2], ..Call::toward(&target) }).unwrap();
+    let mut desired = || {
+        collision.step().unwrap();
+        let quantum = collision.grid().quantum();
+        states(&mut collision).values().map(|pair| f64::from(pair.desired) * quantum / DELTA).sum::<f64>()
+    };
+    assert!((desired() - 1.0).abs() < 1e-3, "far");
+    assert!((desired() - 0.7 * 1.2).abs() < 1e-3, "near");
 }
 
 /// A column of grains on the ground, that weighs down and is pulled aside.
