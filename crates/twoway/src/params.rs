@@ -55,7 +55,8 @@ pub struct BackwardParams {
     pub proximal_growth: f64,
     /// Whether a common factor of all multipliers is optimized before each sweep. Default true.
     pub coarse_correction: bool,
-    /// Whether the sweeps leave out rows that neither press nor are predicted to close. Default true.
+    /// Whether the sweeps leave out rows that neither press nor are predicted to close, and all but one of the
+    /// pairs with the same closest points. Default true.
     pub active_rows: bool,
 }
 

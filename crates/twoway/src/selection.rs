@@ -4,8 +4,9 @@ use crate::blocked::Blocked;
 use crate::chunks::Chunks;
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
-use bowknot_constraints::{SelectedPair, predicted_gap};
+use bowknot_constraints::{ContactForm, Feature, SelectedPair, predicted_gap};
 use bowknot_geometry::{PairKind, Separation, Vector};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Sine of the largest angle by which the normals of rows may leave their cones. Rows are rebuilt in each
@@ -37,6 +38,8 @@ const CLOSING: f64 = 2.0 + 1e-6;
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
     chunks: Chunks<Found>,
+    /// Which pair has the row of a contact that several pairs may have.
+    owners: HashMap<[Feature; 2], SelectedPair>,
     /// The pairs that get a row, in the order of the list.
     pub selected: Vec<SelectedPair>,
     /// The pairs with a multiplier, in the order of the list.
@@ -48,7 +51,8 @@ pub(crate) struct Selection {
 /// What a chunk of pairs finds.
 #[derive(Clone, Copy, Debug)]
 enum Found {
-    Selected(SelectedPair),
+    /// With the features that the closest points are on, where other pairs may have the same.
+    Selected(SelectedPair, Option<[Feature; 2]>),
     Pressing(u32),
     /// So many of the pairs are in contact range.
     InRange(usize),
@@ -61,14 +65,41 @@ impl Selection {
         self.chunks.run(state.contacts.pairs.len(), |range, found| rule.find(range, found));
         self.selected.clear();
         self.pressing.clear();
+        self.owners.clear();
         self.in_range = 0;
         for found in self.chunks.results() {
             match *found {
-                Found::Selected(pair) => self.selected.push(pair),
+                Found::Selected(pair, None) => self.selected.push(pair),
+                Found::Selected(pair, Some(contact)) => {
+                    self.selected.push(pair);
+                    let presses = |pair: SelectedPair| state.contacts.multipliers[pair.pair as usize] > 0.0;
+                    let owner = self.owners.entry(contact).or_insert(pair);
+                    if presses(pair) && !presses(*owner) {
+                        *owner = pair;
+                    }
+                }
                 Found::Pressing(pair) => self.pressing.push(pair),
                 Found::InRange(count) => self.in_range += count,
             }
         }
+        self.keep_owners();
+    }
+
+    /// Takes the rows of pairs away whose contact has the row of another pair, which asks for at least as much.
+    /// What has no row does not press.
+    fn keep_owners(&mut self) {
+        if self.owners.is_empty() {
+            return;
+        }
+        let found = self.chunks.results().filter_map(|found| match found {
+            Found::Selected(pair, contact) => Some((pair, contact)),
+            _ => None,
+        });
+        self.selected.clear();
+        self.selected.extend(found.filter_map(|(pair, contact)| {
+            let owner = contact.map(|contact| self.owners[&contact]);
+            owner.is_none_or(|owner| owner.pair == pair.pair || owner.delta < pair.delta).then_some(*pair)
+        }));
     }
 }
 
@@ -79,12 +110,15 @@ struct Rule<'a> {
     /// By how much any gap can close [m].
     closing: f64,
     only_active: bool,
+    /// Whether pairs with the same closest points share a row: in the forms whose rows do not depend on the pair.
+    merges: bool,
 }
 
 impl<'a> Rule<'a> {
     fn new(scene: &'a CollisionScene, state: &'a ResolveState, blocked: &'a Blocked) -> Self {
         let only_active = scene.params().solver.backward.active_rows;
-        Self { scene, state, blocked, closing: CLOSING * state.remaining, only_active }
+        let merges = only_active && scene.params().contact.form == ContactForm::Gap;
+        Self { scene, state, blocked, closing: CLOSING * state.remaining, only_active, merges }
     }
 
     fn find(&self, range: Range<usize>, found: &mut Vec<Found>) {
@@ -99,7 +133,9 @@ impl<'a> Rule<'a> {
                 if self.is_in_range(kind, p) {
                     in_range += 1;
                     let delta = self.row_delta(kind, p);
-                    found.extend(delta.map(|delta| Found::Selected(SelectedPair { pair: p as u32, delta })));
+                    found.extend(delta.map(|delta| {
+                        Found::Selected(SelectedPair { pair: p as u32, delta }, self.shared_contact(kind, p))
+                    }));
                 }
             }
         }
@@ -114,6 +150,20 @@ impl<'a> Rule<'a> {
             scene.spacing().contact_range(scene.model(), kind, &contacts.pairs.pairs()[p])
         };
         contacts.separations[p].distance <= range
+    }
+
+    /// The features that the closest points of a pair are on, in order, if other pairs may have the same. A vertex
+    /// near a vertex of a mesh is near all triangles and edges around it: one row is enough for all of them.
+    fn shared_contact(&self, kind: PairKind, p: usize) -> Option<[Feature; 2]> {
+        let is_alone = matches!(kind, PairKind::VertexVertex | PairKind::VertexHalfSpace);
+        if is_alone || !self.merges {
+            return None;
+        }
+        let contacts = &self.state.contacts;
+        let mut features = self.scene.features(kind, &contacts.pairs.pairs()[p], &contacts.separations[p]);
+        features.sort_unstable();
+        // Vertices come before edges, edges before triangles.
+        matches!(features, [Feature::Vertex(_), Feature::Vertex(_) | Feature::Edge(_)]).then_some(features)
     }
 
     /// The distance that the row of a pair in range asks for [m], if it gets one.
