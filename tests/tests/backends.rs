@@ -224,7 +224,7 @@ fn nothing_intersects_in_any_scene_of_the_paper() {
         let courses = RUNS.map(|on| course((name, scale, sets, STEPS), on));
         let all = |of: &dyn Fn(&Course) -> String| courses.each_ref().map(of).join(", ");
         println!(
-            "| {name} | {} | {} | {} | {} | {} | {} | {} |",
+            "| {name} | {} | {} | {} | {} | {} | {} | {} | {} |",
             courses[0].end.len(),
             all(&|c| format!("{:.1}", c.seconds)),
             all(&|c| c.two_way_steps.to_string()),
