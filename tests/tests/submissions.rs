@@ -58,11 +58,11 @@ fn scenes_ask_for_so_much() {
         (name, [submissions, dispatches, waits, buffers])
     });
     let expected = [
-        ("drape", [546, 46703, 541, 212]),
-        ("needle", [444, 50005, 440, 218]),
-        ("stack", [88, 3892, 86, 160]),
-        ("bow-knot", [27, 3059, 27, 136]),
-        ("sand", [84, 4796, 84, 140]),
+        ("drape", [560, 50280, 555, 208]),
+        ("needle", [437, 54443, 433, 208]),
+        ("stack", [88, 4087, 86, 160]),
+        ("bow-knot", [27, 3179, 27, 136]),
+        ("sand", [84, 5756, 84, 140]),
     ];
     assert_eq!(counts, expected);
 }
@@ -80,14 +80,14 @@ fn a_bow_knot_in_contact_asks_for_so_much() {
         [device.submissions, device.dispatches, device.waits]
     });
     let expected = [
-        [40, 2377, 40],
-        [23, 2157, 23],
-        [19, 2168, 19],
-        [19, 2158, 19],
-        [33, 2758, 33],
-        [20, 2033, 20],
-        [23, 2249, 23],
-        [16, 1802, 16],
+        [40, 2497, 40],
+        [24, 2300, 24],
+        [19, 2318, 19],
+        [19, 2310, 19],
+        [33, 2904, 33],
+        [20, 2145, 20],
+        [24, 2388, 24],
+        [16, 1888, 16],
     ];
     assert_eq!(counts, expected);
 }

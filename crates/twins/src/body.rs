@@ -5,11 +5,13 @@
 //! element for each thread. The language wants control flow around a wait to be the same for all threads, and the twin
 //! asserts it. Other functions are run by one thread.
 
-use crate::file::Kernel;
+use crate::flow::{count_in, emitted_in, leaves};
+use crate::kernel::Kernel;
 use crate::math;
 use crate::names::rust;
 use crate::scopes::{Scopes, scopes};
 use crate::types;
+use crate::uniform::{common, is_uniform, stored};
 use naga::proc::TypeResolution;
 use naga::valid::FunctionInfo;
 use naga::{
@@ -28,25 +30,6 @@ pub fn literal(literal: Literal) -> String {
         Literal::I32(x) => format!("{x}i32"),
         Literal::Bool(x) => x.to_string(),
         other => panic!("{other:?} has no twin"),
-    }
-}
-
-/// Takes the returns away that end a function of itself.
-pub fn strip_last_returns(block: &mut Block) {
-    if let Some(Statement::Return { value: None }) = block.last() {
-        let last = block.len() - 1;
-        block.cull(last..);
-    }
-    match block.last_mut() {
-        Some(Statement::Block(block)) => strip_last_returns(block),
-        Some(Statement::If { accept, reject, .. }) => {
-            strip_last_returns(accept);
-            strip_last_returns(reject);
-        }
-        Some(Statement::Switch { cases, .. }) => {
-            cases.iter_mut().for_each(|case| strip_last_returns(&mut case.body));
-        }
-        _ => {}
     }
 }
 
@@ -853,226 +836,10 @@ impl<'k> Body<'k> {
     }
 }
 
-/// Whether a block leaves what is around it; whether a `break` and a `continue` in it do so.
-fn leaves(block: &Block, breaks: bool, continues: bool) -> bool {
-    block.iter().any(|statement| match statement {
-        Statement::Return { .. } => true,
-        Statement::Break => breaks,
-        Statement::Continue => continues,
-        Statement::Block(block) => leaves(block, breaks, continues),
-        Statement::If { accept, reject, .. } => {
-            leaves(accept, breaks, continues) || leaves(reject, breaks, continues)
-        }
-        Statement::Loop { body, continuing, .. } => {
-            leaves(body, false, false) || leaves(continuing, false, false)
-        }
-        Statement::Switch { cases, .. } => cases.iter().any(|case| leaves(&case.body, false, continues)),
-        _ => false,
-    })
-}
-
 fn plus(at: &str, more: &str) -> String {
     match (at, more) {
         (at, "0") => at.to_owned(),
         ("0", more) => more.to_owned(),
         _ => format!("{at} + {more}"),
-    }
-}
-
-fn count_in(block: &Block, count: &mut impl FnMut(Handle<Expression>)) {
-    for statement in block.iter() {
-        match statement {
-            Statement::Block(block) => count_in(block, count),
-            Statement::If { condition, accept, reject } => {
-                count(*condition);
-                count_in(accept, count);
-                count_in(reject, count);
-            }
-            Statement::Switch { selector, cases } => {
-                count(*selector);
-                cases.iter().for_each(|case| count_in(&case.body, count));
-            }
-            Statement::Loop { body, continuing, break_if } => {
-                count_in(body, count);
-                count_in(continuing, count);
-                break_if.iter().for_each(|h| count(*h));
-            }
-            Statement::Return { value } => value.iter().for_each(|h| count(*h)),
-            Statement::Store { pointer, value } => {
-                count(*pointer);
-                count(*value);
-            }
-            Statement::Atomic { pointer, value, fun, .. } => {
-                count(*pointer);
-                count(*value);
-                if let AtomicFunction::Exchange { compare: Some(compare) } = fun {
-                    // It is written twice.
-                    count(*compare);
-                    count(*compare);
-                }
-            }
-            Statement::WorkGroupUniformLoad { pointer, .. } => count(*pointer),
-            Statement::Call { arguments, .. } => arguments.iter().for_each(|h| count(*h)),
-            _ => {}
-        }
-    }
-}
-
-fn emitted_in(block: &Block, emitted: &mut HashSet<Handle<Expression>>) {
-    for statement in block.iter() {
-        match statement {
-            Statement::Emit(range) => emitted.extend(range.clone()),
-            Statement::Block(block) => emitted_in(block, emitted),
-            Statement::If { accept, reject, .. } => {
-                emitted_in(accept, emitted);
-                emitted_in(reject, emitted);
-            }
-            Statement::Switch { cases, .. } => cases.iter().for_each(|case| emitted_in(&case.body, emitted)),
-            Statement::Loop { body, continuing, .. } => {
-                emitted_in(body, emitted);
-                emitted_in(continuing, emitted);
-            }
-            _ => {}
-        }
-    }
-}
-
-/// The variable that a statement sets.
-fn stored(function: &Function, statement: &Statement) -> Option<Handle<naga::LocalVariable>> {
-    match statement {
-        Statement::Store { pointer, .. } => match function.expressions[*pointer] {
-            Expression::LocalVariable(variable) => Some(variable),
-            _ => None,
-        },
-        _ => None,
-    }
-}
-
-/// Whether a value is the same for all threads of a workgroup, if those variables are.
-fn is_uniform(
-    function: &Function,
-    module: &naga::Module,
-    common: &HashSet<Handle<naga::LocalVariable>>,
-    is_entry: bool,
-    h: Handle<Expression>,
-) -> bool {
-    let is_uniform = |h| is_uniform(function, module, common, is_entry, h);
-    match &function.expressions[h] {
-        Expression::Literal(_)
-        | Expression::Constant(_)
-        | Expression::ZeroValue(_)
-        | Expression::WorkGroupUniformLoadResult { .. } => true,
-        Expression::FunctionArgument(k) => {
-            let binding = &function.arguments[*k as usize].binding;
-            is_entry && *binding == Some(naga::Binding::BuiltIn(BuiltIn::WorkGroupId))
-        }
-        Expression::LocalVariable(variable) => common.contains(variable),
-        // What other threads may write in between is not.
-        Expression::GlobalVariable(variable) => {
-            module.global_variables[*variable].space == AddressSpace::Uniform
-        }
-        Expression::CallResult(_) | Expression::AtomicResult { .. } => false,
-        expression => math::operands(expression).into_iter().all(is_uniform),
-    }
-}
-
-/// The variables that all threads set together to the same values.
-fn common(kernel: &Kernel, function: &Function, is_entry: bool) -> HashSet<Handle<naga::LocalVariable>> {
-    let mut found: HashSet<_> = function.local_variables.iter().map(|(variable, _)| variable).collect();
-    // Parts of variables, and those that functions get a pointer to, are set elsewhere.
-    for (_, expression) in function.expressions.iter() {
-        let mut base = match expression {
-            Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => *base,
-            _ => continue,
-        };
-        while let Expression::Access { base: next, .. } | Expression::AccessIndex { base: next, .. } =
-            function.expressions[base]
-        {
-            base = next;
-        }
-        if let Expression::LocalVariable(variable) = function.expressions[base] {
-            found.remove(&variable);
-        }
-    }
-    loop {
-        let mut others = HashSet::new();
-        set_apart(kernel, function, &function.body, &found, is_entry, function.result.is_none(), &mut others);
-        if others.is_empty() {
-            return found;
-        }
-        found.retain(|variable| !others.contains(variable));
-    }
-}
-
-/// Variables that a block, which all threads run together, sets to values of each thread, or in the region of one.
-fn set_apart(
-    kernel: &Kernel,
-    function: &Function,
-    block: &Block,
-    common: &HashSet<Handle<naga::LocalVariable>>,
-    is_entry: bool,
-    is_last: bool,
-    others: &mut HashSet<Handle<naga::LocalVariable>>,
-) {
-    let waits = |statement: &Statement| kernel.has_waits(&Block::from_vec(vec![statement.clone()]));
-    let together = if is_last { block.iter().rposition(waits).map_or(0, |k| k + 1) } else { block.len() };
-    for (k, statement) in block.iter().enumerate() {
-        let is_last = is_last && k + 1 == block.len();
-        let alone = Block::from_vec(vec![statement.clone()]);
-        if k >= together || !(kernel.has_waits(&alone) || leaves(&alone, true, true)) {
-            match statement {
-                Statement::Store { value, .. } if k < together => {
-                    let is_uniform = is_uniform(function, &kernel.module, common, is_entry, *value);
-                    others.extend(stored(function, statement).filter(|v| !is_uniform && common.contains(v)));
-                }
-                statement => set_in(function, statement, common, others),
-            }
-            continue;
-        }
-        let mut of_all = |block: &Block, is_last| {
-            set_apart(kernel, function, block, common, is_entry, is_last, others);
-        };
-        match statement {
-            Statement::Block(block) => of_all(block, is_last),
-            Statement::If { accept, reject, .. } => {
-                of_all(accept, is_last);
-                of_all(reject, is_last);
-            }
-            Statement::Loop { body, continuing, .. } => {
-                of_all(body, false);
-                of_all(continuing, false);
-            }
-            Statement::Switch { cases, .. } => cases.iter().for_each(|case| of_all(&case.body, is_last)),
-            _ => {}
-        }
-    }
-}
-
-/// Variables that a statement of one thread sets.
-fn set_in(
-    function: &Function,
-    statement: &Statement,
-    common: &HashSet<Handle<naga::LocalVariable>>,
-    others: &mut HashSet<Handle<naga::LocalVariable>>,
-) {
-    let mut of_one = |block: &Block| block.iter().for_each(|s| set_in(function, s, common, others));
-    match statement {
-        Statement::Block(block) => of_one(block),
-        Statement::If { accept, reject, .. } => {
-            of_one(accept);
-            of_one(reject);
-        }
-        Statement::Loop { body, continuing, .. } => {
-            of_one(body);
-            of_one(continuing);
-        }
-        Statement::Switch { cases, .. } => cases.iter().for_each(|case| of_one(&case.body)),
-        Statement::Call { arguments, .. } => {
-            others.extend(arguments.iter().filter_map(|h| match function.expressions[*h] {
-                Expression::LocalVariable(variable) if common.contains(&variable) => Some(variable),
-                _ => None,
-            }))
-        }
-        statement => others.extend(stored(function, statement).filter(|variable| common.contains(variable))),
     }
 }

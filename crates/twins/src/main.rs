@@ -5,9 +5,11 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `file` | the twin of one kernel |
+//! | `kernel`, `file` | a kernel; its file |
 //! | `body` | that of a function |
 //! | `scopes` | where its variables are declared |
+//! | `uniform` | what is the same for all threads of a workgroup |
+//! | `flow` | walks over statements |
 //! | `math`, `types`, `names` | operators, types and names in Rust |
 
 // A command for people: printing is what it does.
@@ -15,12 +17,15 @@
 
 mod body;
 mod file;
+mod flow;
+mod kernel;
 mod math;
 mod names;
 mod scopes;
 mod types;
+mod uniform;
 
-use file::Kernel;
+use kernel::Kernel;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,5 @@
 //! Parameters of the two-way method: every switch is a field, and there are three presets.
 
-use crate::call::CallInput;
 use crate::stop::{StopParams, StopRule};
 use bowknot_constraints::ContactParams;
 use bowknot_errors::{Checks, Parameters};
@@ -86,9 +85,10 @@ impl Default for BackwardParams {
 const UNKNOWN_SWEEPS: usize = 4;
 
 impl BackwardParams {
-    /// Sweeps of a backward step that does not polish, on the CPU and on a device.
-    pub fn sweeps_of(&self, call: &CallInput) -> usize {
-        if call.has_unknown() { UNKNOWN_SWEEPS * self.sweeps } else { self.sweeps }
+    /// Sweeps of a backward step that does not polish, on the CPU and on a device. `has_unknown`: rows alone hold
+    /// some vertices.
+    pub fn sweeps_of(&self, has_unknown: bool) -> usize {
+        if has_unknown { UNKNOWN_SWEEPS * self.sweeps } else { self.sweeps }
     }
 
     /// The values of the paper.

@@ -117,7 +117,7 @@ fn sweep_and_polish<R>(
     stretch: impl Fn(&R) -> f64,
 ) -> Result<(), lcp::LcpError> {
     let params = &scene.params().solver.backward;
-    let mut sweeps = params.sweeps_of(&state.call);
+    let mut sweeps = params.sweeps_of(state.call.has_unknown());
     batch(rows, sweeps)?;
     if state.remaining < params.polish_distance * scene.lengths().edge {
         let allowed = 1.0 + 0.5 * scene.params().solver.stop.stretch_tolerance;

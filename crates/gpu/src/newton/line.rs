@@ -2,6 +2,7 @@
 
 use super::layout::{SUMMARY, SUMS};
 use super::places::{Newton, bits};
+use super::search::Search;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::kernels;
@@ -19,15 +20,6 @@ const MOST_BITS: u32 = 4;
 
 /// Most nodes whose trials are read as a whole each time: a target then takes no wait of its own.
 const MOST_READ: usize = 1 << 14;
-
-/// The begin of a search along a step: watched nodes at the reference, the trial at full length, and, if it was read, where
-/// its nodes are.
-#[derive(Debug)]
-pub struct Search {
-    at_reference: Watched,
-    trial: Trial,
-    words: Option<Vec<u32>>,
-}
 
 impl Newton {
     /// Workgroups of the stages that sum over all nodes.

@@ -12,7 +12,7 @@
 //! | `blocks` | blocks of nodes, for sums over components |
 //! | `places` | time steps and targets: positions, and which nodes are free |
 //! | `solve`, `rounds` | linear solves: what is recorded, and when they end |
-//! | `line` | trials of the line search |
+//! | `search`, `line` | the begin of a line search, and its trials |
 //! | `balance` | sums over components: momentum, forces out of balance |
 //! | `backend` | the interface of the dynamics |
 
@@ -23,6 +23,7 @@ pub(crate) mod layout;
 mod line;
 mod places;
 mod rounds;
+mod search;
 mod solve;
 mod vectors;
 

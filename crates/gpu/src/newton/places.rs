@@ -1,7 +1,7 @@
 //! Time steps and targets: where the nodes are, and which of them are free.
 
 use super::blocks::Blocks;
-use super::line::Search;
+use super::search::Search;
 use super::vectors::Vectors;
 use crate::assembly::StateGrid;
 use crate::engine::Engine;

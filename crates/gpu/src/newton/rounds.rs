@@ -4,8 +4,8 @@
 //! tolerance, a further round corrects p from there.
 
 use super::layout::Solve;
-use super::line::Search;
 use super::places::Newton;
+use super::search::Search;
 use super::solve::Opposed;
 use crate::engine::Engine;
 use crate::error::GpuError;

@@ -65,7 +65,7 @@ pub fn collision<E: Engine>(
     let backward = &params.solver.backward;
     let defaults = Settings::default();
     let settings = Settings {
-        sweeps: backward.sweeps_of(call),
+        sweeps: backward.sweeps_of(call.has_unknown()),
         cluster_sweeps: defaults.cluster_sweeps,
         bucket_sweeps: defaults.bucket_sweeps,
         bucket_vertices: defaults.bucket_vertices,
