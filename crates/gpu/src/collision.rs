@@ -502,7 +502,7 @@ impl<E: Engine> Collision<E> {
         check_length("positions", positions.len(), self.sizes.vertices)?;
         let on_grid = snapped(&self.grid, positions)?;
         self.pending.write(self.buffers.positions, &padded(&on_grid));
-        self.listed = false;
+        (self.ended, self.listed) = (None, false);
         let grid = self.grid;
         Ok(collected(&on_grid, |&x| grid.position(x)))
     }
@@ -536,14 +536,17 @@ impl<E: Engine> Collision<E> {
     /// A wrong length; the device failed.
     pub fn begin(&mut self, call: &Call<'_>) -> Result<(), CollisionError> {
         check_length("target", call.target.len(), self.sizes.vertices)?;
+        if !call.slip_start.is_empty() {
+            check_length("slip_start", call.slip_start.len(), self.sizes.vertices)?;
+        }
         let grid = self.grid;
         let inside = |points: &[Point]| -> Vec<GridPoint> { collected(points, |y| grid.nearest_inside(y)) };
         let (target, slip_start) = (inside(call.target), inside(call.slip_start));
         let slips_from_here = slip_start.is_empty();
         let changes = self.set_known(call.known)?;
         let carried = carried::sorted(&grid, call.carried);
+        self.carried.set(&mut self.engine, &carried, &mut self.pending)?;
         let mut recording = take(&mut self.pending);
-        self.carried.set(&mut self.engine, &carried, &mut recording)?;
         let b = &self.buffers;
         if changes {
             recording.write(b.vertices, &self.vertices);
@@ -555,7 +558,6 @@ impl<E: Engine> Collision<E> {
         }
         recording.write(b.targets, &padded(&target));
         if !slips_from_here {
-            check_length("slip_start", slip_start.len(), self.sizes.vertices)?;
             recording.write(b.slip_start, &padded(&slip_start));
         }
         recording.write(b.factor, &[1.0, MOST_GROWTH]);

@@ -92,6 +92,13 @@ impl Recording {
         self.commands.push(Command::Write { buffer, words });
     }
 
+    /// Takes all writes to a buffer back.
+    pub(crate) fn forget(&mut self, buffer: BufferId) {
+        self.commands.retain(
+            |command| !matches!(command, Command::Write { buffer: written, .. } if *written == buffer),
+        );
+    }
+
     /// Runs a stage with one thread for each of `threads` pieces of work.
     pub(crate) fn dispatch<P: Pod>(
         &mut self,

@@ -300,8 +300,11 @@ impl Dynamics {
         let Workspace { x, imposed, trial, solver, .. } = &mut *work;
         if let Some(device) = device.as_mut().filter(|_| !course.leaves_device) {
             let beginning = Beginning { iterate: x, free: &free, imposed, watched: &watched };
-            let target =
-                DeviceTarget { device, beginning, trial: sets_trial.then_some(trial.as_mut_slice()) };
+            let target = DeviceTarget {
+                device: &mut *device,
+                beginning,
+                trial: sets_trial.then_some(trial.as_mut_slice()),
+            };
             match on_device(model, params, step, course, target, &mut over) {
                 Ok(done) => {
                     if sets_trial {
@@ -314,6 +317,8 @@ impl Dynamics {
                     course.leaves_device = true;
                     solver.leave_single_precision();
                     if let Lost::Failed(error) = lost {
+                        // It may not have got what was on its way.
+                        device.has_model = false;
                         return Err(failed(&error));
                     }
                     if *departures == 0 {

@@ -71,6 +71,8 @@ impl CarriedList {
         recording: &mut Recording,
     ) -> Result<(), GpuError> {
         if self.capacity < entries.len() {
+            // A call that began and made no step has left its entries in the recording.
+            recording.forget(self.buffer);
             engine.free(self.buffer);
             *self = Self::with_room(engine, entries.len() + entries.len() / 4)?;
         }

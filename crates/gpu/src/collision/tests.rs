@@ -685,3 +685,32 @@ fn trees_are_ordered_anew_where_grains_have_mixed() {
     assert!(before == after && before.len() > count);
     assert!(old > 0.5 * 1.5 * DELTA * f64::from(SIDE) && new < 4.0 * DELTA, "{old} {new}");
 }
+
+/// What is placed and begun is recorded and runs with the first steps. Nothing of it is lost, or names a buffer that is gone.
+#[test]
+fn calls_that_are_refused_or_begun_anew_leave_nothing_behind() {
+    let (model, x) = sheets();
+    let target: Vec<Point> = x.iter().map(|x| x + Vector::new(0.0, 0.0, DELTA)).collect();
+    let moved: Vec<Point> = x.iter().map(|x| x + Vector::new(DELTA, 0.0, 0.0)).collect();
+    let carried: Vec<Carried> = (0..9)
+        .map(|k| Carried {
+            candidate: Candidate::new(Kind::VertexTriangle, k, k),
+            multiplier: 1e-3,
+            friction: Vector::zeros(),
+        })
+        .collect();
+    let mut collision = collision(&model, &x, &x, None);
+    let placed = collision.place(&moved).unwrap();
+    let refused = collision.begin(&Call { slip_start: &x[1..], ..Call::toward(&target) });
+    assert!(matches!(refused, Err(CollisionError::Length { what: "slip_start", .. })));
+    collision.begin(&Call { carried: &carried[..2], ..Call::toward(&moved) }).unwrap();
+    collision.begin(&Call { carried: &carried, ..Call::toward(&moved) }).unwrap();
+    collision.step().unwrap();
+    // The sheets part, upward and downward, from where they were placed.
+    let end = collision.end().unwrap().positions;
+    assert!(end.iter().zip(&placed).all(|(x, placed)| (x.x - placed.x).abs() < 0.01 * DELTA));
+    collision.begin(&Call::toward(&moved)).unwrap();
+    collision.step().unwrap();
+    let placed = collision.place(&x).unwrap();
+    assert_eq!(collision.end().unwrap().positions, placed);
+}
