@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use std::cell::{Ref, RefCell, RefMut};
 
-/// The buffers of a dispatch, in the order of the stage's bindings, and its parameters.
+/// The buffers of a dispatch, in the order of the stage's bindings, its parameters, and how many workgroups it has.
 #[derive(Clone, Copy)]
 pub(crate) struct Bound<'a> {
     buffers: &'a [&'a RefCell<Vec<u32>>],
@@ -24,20 +24,13 @@ impl<'a> Bound<'a> {
         self.workgroups
     }
 
-    pub fn read<T: Pod>(&self, binding: usize) -> Ref<'a, [T]> {
-        Ref::map(self.buffers[binding].borrow(), |words| whole(words))
+    /// The words of a buffer.
+    pub fn read(&self, binding: usize) -> Ref<'a, Vec<u32>> {
+        self.buffers[binding].borrow()
     }
 
-    pub fn write<T: Pod>(&self, binding: usize) -> RefMut<'a, [T]> {
-        RefMut::map(self.buffers[binding].borrow_mut(), |words| {
-            let count = words.len() * 4 / size_of::<T>();
-            bytemuck::cast_slice_mut(&mut words[..count * size_of::<T>() / 4])
-        })
+    /// The same, to be written.
+    pub fn write(&self, binding: usize) -> RefMut<'a, Vec<u32>> {
+        self.buffers[binding].borrow_mut()
     }
-}
-
-/// As many entries as the words hold.
-fn whole<T: Pod>(words: &[u32]) -> &[T] {
-    let count = words.len() * 4 / size_of::<T>();
-    bytemuck::cast_slice(&words[..count * size_of::<T>() / 4])
 }

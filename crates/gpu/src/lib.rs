@@ -20,6 +20,7 @@
 mod adapter;
 mod adjacency;
 mod assembly;
+#[cfg(feature = "twins")]
 mod bound;
 mod bricks;
 mod collision;
@@ -40,6 +41,7 @@ mod tree;
 #[allow(warnings, clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)]
 mod kernels;
 mod two_way;
+#[cfg(feature = "twins")]
 mod wgsl;
 
 pub use bowknot_dynamics as dynamics;
@@ -47,9 +49,9 @@ pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
 pub use collision::{Call, Carried, Collision, CollisionError, ContactRow, End, Settings, StepReport, Stop};
-pub use engine::{
-    ComparingEngine, DeviceEngine, Difference, Engine, PhaseSeconds, Profile, StageTime, TwinEngine,
-};
+#[cfg(feature = "twins")]
+pub use engine::{ComparingEngine, Difference, TwinEngine};
+pub use engine::{DeviceEngine, Engine, PhaseSeconds, Profile, StageTime};
 pub use error::GpuError;
 pub use grid::{Grid, GridError, GridPoint};
 pub use layout::{Candidate, Kind, NONE};

@@ -4,6 +4,7 @@
 //! to [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work; only those that scan
 //! depend on the size of a workgroup.
 
+#[cfg(feature = "twins")]
 use crate::bound::Bound;
 
 /// What a stage does with a buffer.
@@ -23,6 +24,7 @@ pub(crate) struct Stage {
     pub workgroup: usize,
     /// The storage buffers, from binding 1 on.
     pub bindings: &'static [Access],
+    #[cfg(feature = "twins")]
     pub twin: fn(Bound<'_>),
 }
 

@@ -4,9 +4,6 @@
 //! compute the same bits everywhere.
 
 pub(crate) use crate::bound::Bound;
-pub(crate) use crate::stages::Access::{Read, Write};
-pub(crate) use crate::stages::Stage;
-pub use bytemuck::{Pod, Zeroable};
 
 use std::array::from_fn;
 use std::ops::{Add, Mul};

@@ -572,6 +572,7 @@ impl<'k> Body<'k> {
             Statement::Atomic { pointer, fun, value, result } => {
                 let value = self.value(*value);
                 let old = self.load(*pointer);
+                let mut condition = String::new();
                 let (new, found) = match fun {
                     AtomicFunction::Add => (format!("old.wrapping_add({value})"), "old"),
                     AtomicFunction::Subtract => (format!("old.wrapping_sub({value})"), "old"),
@@ -582,18 +583,10 @@ impl<'k> Body<'k> {
                     AtomicFunction::Max => (format!("old.max({value})"), "old"),
                     AtomicFunction::Exchange { compare: None } => (value, "old"),
                     AtomicFunction::Exchange { compare: Some(compare) } => {
-                        let compare = self.value(*compare);
-                        (
-                            format!("if exchanged {{ {value} }} else {{ old }}"),
-                            if compare.is_empty() { "" } else { "Exchanged { old_value: old, exchanged }" },
-                        )
+                        condition = format!("let exchanged = old == {}; ", self.value(*compare));
+                        let new = format!("if exchanged {{ {value} }} else {{ old }}");
+                        (new, "Exchanged { old_value: old, exchanged }")
                     }
-                };
-                let condition = match fun {
-                    AtomicFunction::Exchange { compare: Some(compare) } => {
-                        format!("let exchanged = old == {}; ", self.value(*compare))
-                    }
-                    _ => String::new(),
                 };
                 let store = self.store(*pointer, "new");
                 let text = format!("{{ let old = {old}; {condition}let new = {new}; {store} {found} }}");

@@ -35,7 +35,9 @@ impl Kernel {
         let _ = writeln!(
             out,
             "// Written from `shader/{0}.wgsl` by `cargo xtask twins`: change that file, not this one.\n\n\
-             use crate::wgsl::*;\n\n\
+             use crate::stages::Access::{{Read, Write}};\n\
+             use crate::stages::Stage;\n\
+             use bytemuck::{{Pod, Zeroable}};\n\n\
              pub static STAGE: Stage = Stage {{\n    name: \"{0}\",\n    parts: &[",
             self.name
         );
@@ -47,13 +49,18 @@ impl Kernel {
             buffers.iter().map(|(_, _, space)| if writes(*space) { "Write" } else { "Read" }).collect();
         let _ = writeln!(
             out,
-            "    workgroup: {},\n    bindings: &[{}],\n    twin: run,\n}};\n",
+            "    workgroup: {},\n    bindings: &[{}],\n    #[cfg(feature = \"twins\")]\n    twin: twin::run,\n}};\n",
             self.threads,
             access.join(", ")
         );
         self.constants(&mut out);
         let functions = self.functions();
-        self.structs(&mut out, &params, &functions);
+        self.structs(&mut out, &params, &params, true);
+        let _ = writeln!(
+            out,
+            "#[cfg(feature = \"twins\")]\npub mod twin {{\nuse super::*;\nuse crate::wgsl::*;\n"
+        );
+        self.structs(&mut out, &params, &functions, false);
         let _ = writeln!(out, "struct Memory<'a> {{\n    params: {params},");
         for (name, _, space) in &buffers {
             let _ = writeln!(out, "    {name}: &'a {}[u32],", if writes(*space) { "mut " } else { "" });
@@ -72,6 +79,7 @@ impl Kernel {
         out += &functions;
         let waits = self.has_waits(&self.module.entry_points[0].function.body);
         self.run(&mut out, waits, &buffers, &groups, &privates, &writes);
+        out += "}\n";
         out
     }
 
@@ -136,7 +144,7 @@ impl Kernel {
     }
 
     /// Structs that functions name, and those in them.
-    fn structs(&self, out: &mut String, params: &str, functions: &str) {
+    fn structs(&self, out: &mut String, params: &str, functions: &str, of_params: bool) {
         let mut used = functions.to_owned();
         for (_, ty) in self.module.types.iter().collect::<Vec<_>>().into_iter().rev() {
             let (TypeInner::Struct { members, .. }, Some(name)) = (&ty.inner, &ty.name) else { continue };
@@ -161,6 +169,9 @@ impl Kernel {
                 continue;
             }
             let is_params = name == params;
+            if is_params != of_params {
+                continue;
+            }
             let fields: Vec<(String, Handle<Type>, u32)> = members
                 .iter()
                 .map(|m| (rust(m.name.as_deref().unwrap_or("nameless")), m.ty, m.offset / 4))
@@ -233,10 +244,10 @@ impl Kernel {
         privates: &[(String, Handle<Type>, AddressSpace)],
         writes: &dyn Fn(AddressSpace) -> bool,
     ) {
-        let _ = writeln!(out, "fn run(bound: Bound<'_>) {{");
+        let _ = writeln!(out, "pub fn run(bound: Bound<'_>) {{");
         for (k, (name, _, space)) in buffers.iter().enumerate() {
             let (mutable, access) = if writes(*space) { ("mut ", "write") } else { ("", "read") };
-            let _ = writeln!(out, "    let {mutable}{name} = bound.{access}::<u32>({k});");
+            let _ = writeln!(out, "    let {mutable}{name} = bound.{access}({k});");
         }
         let _ = writeln!(out, "    let mut m = Memory {{\n        params: bound.params(),");
         for (name, _, space) in buffers {

@@ -68,8 +68,6 @@ pub fn count_in(block: &Block, count: &mut impl FnMut(Handle<Expression>)) {
                 count(*pointer);
                 count(*value);
                 if let AtomicFunction::Exchange { compare: Some(compare) } = fun {
-                    // It is written twice.
-                    count(*compare);
                     count(*compare);
                 }
             }

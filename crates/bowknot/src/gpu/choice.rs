@@ -162,7 +162,7 @@ fn restore(simulator: &mut Simulator, start: &Checkpoint) -> Result<(), Simulati
     restored.map_err(|message| SimulationError::Internal { step: start.step, message })
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "twins"))]
 mod tests {
     use super::*;
     use crate::simulator::BackendError;

@@ -12,7 +12,9 @@ mod backend;
 mod choice;
 
 pub use bowknot_gpu::{
-    Adapter, BufferId, ComparingEngine, ConjugateGradients, Device, DeviceEngine, DispatchView, Engine,
-    GpuError, GpuResolveError, Phase, Profile, Recording, StageTime, TwinEngine, resolve_on,
+    Adapter, BufferId, ConjugateGradients, Device, DeviceEngine, DispatchView, Engine, GpuError,
+    GpuResolveError, Phase, Profile, Recording, StageTime, resolve_on,
 };
+#[cfg(feature = "twins")]
+pub use bowknot_gpu::{ComparingEngine, TwinEngine};
 pub use choice::Choice;

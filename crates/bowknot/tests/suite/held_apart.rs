@@ -103,7 +103,7 @@ fn a_pin_that_waits_asks_for_nothing() {
     assert!(too_long(&simulator).is_empty());
 }
 
-#[cfg(feature = "gpu")]
+#[cfg(feature = "twins")]
 #[test]
 fn the_twins_of_the_kernels_let_edges_yield_as_well() {
     use bowknot::gpu::{Device, TwinEngine};

@@ -1,6 +1,8 @@
 // Written from `shader/accumulate.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "accumulate",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Write, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -25,6 +28,11 @@ pub struct Params {
     pub nodes: u32,
     pub last: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -78,12 +86,12 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let solution = bound.read::<u32>(0);
-    let mut progress = bound.write::<u32>(1);
-    let mut ended = bound.write::<u32>(2);
-    let mut solve = bound.write::<u32>(3);
-    let mut step = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let solution = bound.read(0);
+    let mut progress = bound.write(1);
+    let mut ended = bound.write(2);
+    let mut solve = bound.write(3);
+    let mut step = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         solution: &solution,
@@ -97,4 +105,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/advance.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "advance",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -37,6 +40,18 @@ pub const FREE_MOVE: u32 = 2u32;
 pub const LARGEST_MOVE: u32 = 3u32;
 pub const UNHINDERED: u32 = 4u32;
 pub const UNHINDERED_LAG: u32 = 5u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub vertices: u32,
+    pub progress: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Vertex {
@@ -105,13 +120,6 @@ impl Stored for Vertex {
         self.mass.store(words, at + 10);
         self.root_of_friction.store(words, at + 11);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub vertices: u32,
-    pub progress: f32,
 }
 
 struct Memory<'a> {
@@ -312,15 +320,15 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let targets = bound.read::<u32>(0);
-    let vertices = bound.read::<u32>(1);
-    let paths = bound.read::<u32>(2);
-    let alphas = bound.read::<u32>(3);
-    let group_alphas = bound.read::<u32>(4);
-    let mut positions = bound.write::<u32>(5);
-    let mut control = bound.write::<u32>(6);
-    let mut late = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let targets = bound.read(0);
+    let vertices = bound.read(1);
+    let paths = bound.read(2);
+    let alphas = bound.read(3);
+    let group_alphas = bound.read(4);
+    let mut positions = bound.write(5);
+    let mut control = bound.write(6);
+    let mut late = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         targets: &targets,
@@ -339,4 +347,5 @@ fn run(bound: Bound<'_>) {
         m.shared_overflow = 0u32;
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/aim.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "aim",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -40,6 +43,11 @@ pub struct Params {
     pub vertices: u32,
     pub growth: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -111,12 +119,12 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let targets = bound.read::<u32>(1);
-    let displacements = bound.read::<u32>(2);
-    let mut aims = bound.write::<u32>(3);
-    let mut swings = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let targets = bound.read(1);
+    let displacements = bound.read(2);
+    let mut aims = bound.write(3);
+    let mut swings = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -130,4 +138,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

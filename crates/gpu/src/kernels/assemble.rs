@@ -1,6 +1,8 @@
 // Written from `shader/assemble.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "assemble",
@@ -10,11 +12,24 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub const SLICE: u32 = 32u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub entries: u32,
+    pub nodes: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Entry {
@@ -51,13 +66,6 @@ impl Stored for Entry {
         self.count.store(words, at + 2);
         self.bending.store(words, at + 3);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub entries: u32,
-    pub nodes: u32,
 }
 
 struct Memory<'a> {
@@ -187,13 +195,13 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let entries = bound.read::<u32>(0);
-    let sources = bound.read::<u32>(1);
-    let blocks = bound.read::<u32>(2);
-    let slices = bound.read::<u32>(3);
-    let row_sums = bound.read::<u32>(4);
-    let mut words = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let entries = bound.read(0);
+    let sources = bound.read(1);
+    let blocks = bound.read(2);
+    let slices = bound.read(3);
+    let row_sums = bound.read(4);
+    let mut words = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         entries: &entries,
@@ -208,4 +216,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

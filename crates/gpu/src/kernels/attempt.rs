@@ -1,6 +1,8 @@
 // Written from `shader/attempt.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "attempt",
@@ -14,7 +16,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,11 @@ pub struct Params {
     pub imposed: u32,
     pub scale: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -227,15 +235,15 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let iterate = bound.read::<u32>(0);
-    let imposed = bound.read::<u32>(1);
-    let free = bound.read::<u32>(2);
-    let step = bound.read::<u32>(3);
-    let right_side = bound.read::<u32>(4);
-    let target_start = bound.read::<u32>(5);
-    let mut trial = bound.write::<u32>(6);
-    let mut sums = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let iterate = bound.read(0);
+    let imposed = bound.read(1);
+    let free = bound.read(2);
+    let step = bound.read(3);
+    let right_side = bound.read(4);
+    let target_start = bound.read(5);
+    let mut trial = bound.write(6);
+    let mut sums = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         iterate: &iterate,
@@ -254,4 +262,5 @@ fn run(bound: Bound<'_>) {
         m.shared_largest = [0.0f32; 256];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/balance.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "balance",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,17 @@ pub const EDGE_EDGE: u32 = 3u32;
 pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub blocks: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct BlockSum {
@@ -73,12 +87,6 @@ impl Stored for BlockSum {
         self.padding_1.store(words, at + 6);
         self.padding_2.store(words, at + 7);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub blocks: u32,
 }
 
 struct Memory<'a> {
@@ -217,10 +225,10 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let blocks = bound.read::<u32>(0);
-    let sums = bound.read::<u32>(1);
-    let mut control = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let blocks = bound.read(0);
+    let sums = bound.read(1);
+    let mut control = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         blocks: &blocks,
@@ -232,4 +240,5 @@ fn run(bound: Bound<'_>) {
         m.shared_sums = [BlockSum::ZERO; 64];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/begin.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "begin",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write, Write, Write, Write, Write, Read],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -31,6 +34,20 @@ pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const START_SHARE: f32 = 0.97f32;
 pub const LARGEST: f32 = 3.4028235e38f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub vertices: u32,
+    pub limits: u32,
+    pub slips_from_here: u32,
+    pub guarded_stretch: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Late {
@@ -104,15 +121,6 @@ impl Stored for EdgeLimit {
         self.multiplier.store(words, at + 4);
         self.longest.store(words, at + 7);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub vertices: u32,
-    pub limits: u32,
-    pub slips_from_here: u32,
-    pub guarded_stretch: f32,
 }
 
 struct Memory<'a> {
@@ -191,15 +199,15 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let targets = bound.read::<u32>(1);
-    let mut limits = bound.write::<u32>(2);
-    let mut aims = bound.write::<u32>(3);
-    let mut slip_start = bound.write::<u32>(4);
-    let mut swings = bound.write::<u32>(5);
-    let mut late = bound.write::<u32>(6);
-    let vertices = bound.read::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let targets = bound.read(1);
+    let mut limits = bound.write(2);
+    let mut aims = bound.write(3);
+    let mut slip_start = bound.write(4);
+    let mut swings = bound.write(5);
+    let mut late = bound.write(6);
+    let vertices = bound.read(7);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -216,4 +224,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

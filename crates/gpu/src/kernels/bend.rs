@@ -1,6 +1,8 @@
 // Written from `shader/bend.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "bend",
@@ -13,13 +15,29 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub const NONE: u32 = 4294967295u32;
 pub const TINY: f32 = 1e-18f32;
 pub const MIN_RATIO: f32 = 0.05f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct ElementParams {
+    pub elements: u32,
+    pub first_block: u32,
+    pub absolute: u32,
+    pub rate: f32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Bend {
@@ -68,16 +86,6 @@ impl Stored for Bend {
         self.crushed.store(words, at + 46);
         self.padding.store(words, at + 47);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct ElementParams {
-    pub elements: u32,
-    pub first_block: u32,
-    pub absolute: u32,
-    pub rate: f32,
-    pub quantum: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -437,11 +445,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let bends = bound.read::<u32>(0);
-    let positions = bound.read::<u32>(1);
-    let start = bound.read::<u32>(2);
-    let mut blocks = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let bends = bound.read(0);
+    let positions = bound.read(1);
+    let start = bound.read(2);
+    let mut blocks = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         bends: &bends,
@@ -454,4 +462,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/bend_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "bend_energy",
@@ -14,7 +16,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -22,6 +25,21 @@ pub const NONE: u32 = 4294967295u32;
 pub const TINY: f32 = 1e-18f32;
 pub const MIN_RATIO: f32 = 0.05f32;
 pub const THREADS: u32 = 64u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct EnergyParams {
+    pub count: u32,
+    pub first: u32,
+    pub workgroups: u32,
+    pub rate: f32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Bend {
@@ -70,16 +88,6 @@ impl Stored for Bend {
         self.crushed.store(words, at + 46);
         self.padding.store(words, at + 47);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct EnergyParams {
-    pub count: u32,
-    pub first: u32,
-    pub workgroups: u32,
-    pub rate: f32,
-    pub quantum: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -458,12 +466,12 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     put_part(m, std::array::from_fn::<_, 64, _>(|t| ([group, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| ([t as u32, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| _e32[t]));
 }
 
-fn run(bound: Bound<'_>) {
-    let bends = bound.read::<u32>(0);
-    let reference = bound.read::<u32>(1);
-    let trial = bound.read::<u32>(2);
-    let start = bound.read::<u32>(3);
-    let mut parts = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let bends = bound.read(0);
+    let reference = bound.read(1);
+    let trial = bound.read(2);
+    let start = bound.read(3);
+    let mut parts = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         bends: &bends,
@@ -477,4 +485,5 @@ fn run(bound: Bound<'_>) {
         m.shared_parts = [[0.0f32; 4]; 64];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/boxes.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "boxes",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,18 @@ pub const EDGE_EDGE: u32 = 3u32;
 pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub slots: u32,
+    pub count: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Vertex {
@@ -202,13 +217,6 @@ impl Stored for NodeBox {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub slots: u32,
-    pub count: u32,
-}
-
 struct Memory<'a> {
     params: Params,
     slots: &'a [u32],
@@ -275,12 +283,12 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let slots = bound.read::<u32>(0);
-    let balls = bound.read::<u32>(1);
-    let vertices = bound.read::<u32>(2);
-    let mut boxes = bound.write::<u32>(3);
-    let mut control = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let slots = bound.read(0);
+    let balls = bound.read(1);
+    let vertices = bound.read(2);
+    let mut boxes = bound.write(3);
+    let mut control = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         slots: &slots,
@@ -294,4 +302,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

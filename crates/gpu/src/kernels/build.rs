@@ -1,6 +1,8 @@
 // Written from `shader/build.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "build",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -34,6 +37,18 @@ pub const FIXED: u32 = 65535u32;
 pub const WEIGHT_UNITS: f32 = 262144.0f32;
 pub const MOST: f32 = 128.0f32;
 pub const AT_VERTEX: f32 = 1e-5f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub strength: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Separation {
@@ -243,13 +258,6 @@ impl Stored for Pair {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
-    pub strength: f32,
-}
-
 struct Memory<'a> {
     params: Params,
     vertices: &'a [u32],
@@ -444,14 +452,14 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let vertices = bound.read::<u32>(0);
-    let candidates = bound.read::<u32>(1);
-    let separations = bound.read::<u32>(2);
-    let states = bound.read::<u32>(3);
-    let mut rows = bound.write::<u32>(4);
-    let mut proximal = bound.write::<u32>(5);
-    let mut control = bound.write::<u32>(6);
+pub fn run(bound: Bound<'_>) {
+    let vertices = bound.read(0);
+    let candidates = bound.read(1);
+    let separations = bound.read(2);
+    let states = bound.read(3);
+    let mut rows = bound.write(4);
+    let mut proximal = bound.write(5);
+    let mut control = bound.write(6);
     let mut m = Memory {
         params: bound.params(),
         vertices: &vertices,
@@ -467,4 +475,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

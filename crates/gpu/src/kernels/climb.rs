@@ -1,6 +1,8 @@
 // Written from `shader/climb.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "climb",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -35,6 +38,11 @@ pub struct Params {
     pub parents: u32,
     pub padding: [u32; 3],
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Wrench {
@@ -466,13 +474,13 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let coarse = bound.read::<u32>(0);
-    let links = bound.read::<u32>(1);
-    let mut forces = bound.write::<u32>(2);
-    let mut group_motions = bound.write::<u32>(3);
-    let mut sums = bound.write::<u32>(4);
-    let mut progress = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let coarse = bound.read(0);
+    let links = bound.read(1);
+    let mut forces = bound.write(2);
+    let mut group_motions = bound.write(3);
+    let mut sums = bound.write(4);
+    let mut progress = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         coarse: &coarse,
@@ -495,4 +503,5 @@ fn run(bound: Bound<'_>) {
         m.lane_forces = [[0.0f32; 6]; 256];
         main(&mut m, group as u32);
     }
+}
 }

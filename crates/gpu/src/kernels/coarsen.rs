@@ -1,6 +1,8 @@
 // Written from `shader/coarsen.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "coarsen",
@@ -11,11 +13,25 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub const BATCH: u32 = 64u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub pairs: u32,
+    pub first: u32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Frame {
@@ -52,14 +68,6 @@ impl Stored for Frame {
         self.moment.store(words, at + 4);
         self.held.store(words, at + 10);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub pairs: u32,
-    pub first: u32,
-    pub quantum: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -270,11 +278,11 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let sums = bound.read::<u32>(0);
-    let parts = bound.read::<u32>(1);
-    let frames = bound.read::<u32>(2);
-    let mut couplings = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let sums = bound.read(0);
+    let parts = bound.read(1);
+    let frames = bound.read(2);
+    let mut couplings = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         sums: &sums,
@@ -291,4 +299,5 @@ fn run(bound: Bound<'_>) {
         m.other_links = [[0.0f32; 4]; 64];
         main(&mut m, group as u32);
     }
+}
 }

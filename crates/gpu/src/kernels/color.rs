@@ -1,6 +1,8 @@
 // Written from `shader/color.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "color",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Write, Write, Write, Write, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -38,6 +41,11 @@ pub struct Params {
     pub end: u32,
     pub capacity: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -757,15 +765,15 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let displacements = bound.read::<u32>(0);
-    let mut rows = bound.write::<u32>(1);
-    let mut buckets = bound.write::<u32>(2);
-    let mut in_use = bound.write::<u32>(3);
-    let mut claims = bound.write::<u32>(4);
-    let mut waiting = bound.write::<u32>(5);
-    let mut order = bound.write::<u32>(6);
-    let mut color_ends = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let displacements = bound.read(0);
+    let mut rows = bound.write(1);
+    let mut buckets = bound.write(2);
+    let mut in_use = bound.write(3);
+    let mut claims = bound.write(4);
+    let mut waiting = bound.write(5);
+    let mut order = bound.write(6);
+    let mut color_ends = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         displacements: &displacements,
@@ -790,4 +798,5 @@ fn run(bound: Bound<'_>) {
         m.places = [0u32; 129];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/combine.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "combine",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -27,6 +30,11 @@ pub struct Params {
     pub workgroups: u32,
     pub first: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -217,15 +225,15 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let image = bound.read::<u32>(0);
-    let second = bound.read::<u32>(1);
-    let second_image = bound.read::<u32>(2);
-    let right_side = bound.read::<u32>(3);
-    let sums = bound.read::<u32>(4);
-    let solve = bound.read::<u32>(5);
-    let mut direction = bound.write::<u32>(6);
-    let mut step = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let image = bound.read(0);
+    let second = bound.read(1);
+    let second_image = bound.read(2);
+    let right_side = bound.read(3);
+    let sums = bound.read(4);
+    let solve = bound.read(5);
+    let mut direction = bound.write(6);
+    let mut step = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         image: &image,
@@ -242,4 +250,5 @@ fn run(bound: Bound<'_>) {
         m.shared_sums = [0.0f32; 256];
         main(&mut m, group as u32);
     }
+}
 }

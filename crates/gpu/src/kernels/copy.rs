@@ -1,6 +1,8 @@
 // Written from `shader/copy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "copy",
@@ -10,7 +12,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -20,6 +23,11 @@ pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub struct Params {
     pub words: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -50,9 +58,9 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let source = bound.read::<u32>(0);
-    let mut copy = bound.write::<u32>(1);
+pub fn run(bound: Bound<'_>) {
+    let source = bound.read(0);
+    let mut copy = bound.write(1);
     let mut m = Memory {
         params: bound.params(),
         source: &source,
@@ -63,4 +71,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

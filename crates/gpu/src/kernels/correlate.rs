@@ -1,6 +1,8 @@
 // Written from `shader/correlate.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "correlate",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -25,6 +28,11 @@ pub struct Params {
     pub workgroups: u32,
     pub first: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -146,13 +154,13 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let direction = bound.read::<u32>(0);
-    let image = bound.read::<u32>(1);
-    let second = bound.read::<u32>(2);
-    let second_image = bound.read::<u32>(3);
-    let right_side = bound.read::<u32>(4);
-    let mut sums = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let direction = bound.read(0);
+    let image = bound.read(1);
+    let second = bound.read(2);
+    let second_image = bound.read(3);
+    let right_side = bound.read(4);
+    let mut sums = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         direction: &direction,
@@ -167,4 +175,5 @@ fn run(bound: Bound<'_>) {
         m.shared_sums = [0.0f32; 256];
         main(&mut m, group as u32);
     }
+}
 }

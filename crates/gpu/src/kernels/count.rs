@@ -1,6 +1,8 @@
 // Written from `shader/count.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "count",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -40,6 +43,11 @@ pub struct Params {
     pub rows: u32,
     pub list: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -156,10 +164,10 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let mut starts = bound.write::<u32>(0);
-    let mut blocks = bound.write::<u32>(1);
-    let mut control = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let mut starts = bound.write(0);
+    let mut blocks = bound.write(1);
+    let mut control = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         starts: &mut starts,
@@ -173,4 +181,5 @@ fn run(bound: Bound<'_>) {
         m.shared_rows = 0u32;
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/couple.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "couple",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -21,6 +24,21 @@ pub const DOMAIN_WORDS: u32 = 2304u32;
 pub const SLICE: u32 = 32u32;
 pub const BLOCK_WORDS: u32 = 10u32;
 pub const SHARE: u32 = 37u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub pairs: u32,
+    pub first: u32,
+    pub width: u32,
+    pub first_frame: u32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Frame {
@@ -57,16 +75,6 @@ impl Stored for Frame {
         self.moment.store(words, at + 4);
         self.held.store(words, at + 10);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub pairs: u32,
-    pub first: u32,
-    pub width: u32,
-    pub first_frame: u32,
-    pub quantum: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -433,15 +441,15 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let pairs = bound.read::<u32>(0);
-    let slices = bound.read::<u32>(1);
-    let words = bound.read::<u32>(2);
-    let slots = bound.read::<u32>(3);
-    let places = bound.read::<u32>(4);
-    let positions = bound.read::<u32>(5);
-    let frames = bound.read::<u32>(6);
-    let mut couplings = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let pairs = bound.read(0);
+    let slices = bound.read(1);
+    let words = bound.read(2);
+    let slots = bound.read(3);
+    let places = bound.read(4);
+    let positions = bound.read(5);
+    let frames = bound.read(6);
+    let mut couplings = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         pairs: &pairs,
@@ -458,4 +466,5 @@ fn run(bound: Bound<'_>) {
         m.shares = [0.0f32; 2368];
         main(&mut m, group as u32);
     }
+}
 }

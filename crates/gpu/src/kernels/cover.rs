@@ -1,6 +1,8 @@
 // Written from `shader/cover.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "cover",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -31,6 +34,20 @@ pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const COVERED: f32 = 0.998f32;
 pub const ROOM: f32 = 4096.0f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub vertices: u32,
+    pub all: u32,
+    pub slack: f32,
+    pub smallest: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Vertex {
@@ -130,15 +147,6 @@ impl Stored for Ball {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub vertices: u32,
-    pub all: u32,
-    pub slack: f32,
-    pub smallest: f32,
-}
-
 struct Memory<'a> {
     params: Params,
     positions: &'a [u32],
@@ -221,12 +229,12 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let paths = bound.read::<u32>(1);
-    let vertices = bound.read::<u32>(2);
-    let mut balls = bound.write::<u32>(3);
-    let mut control = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let paths = bound.read(1);
+    let vertices = bound.read(2);
+    let mut balls = bound.write(3);
+    let mut control = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -240,4 +248,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

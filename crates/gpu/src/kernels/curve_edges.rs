@@ -1,6 +1,8 @@
 // Written from `shader/curve_edges.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "curve_edges",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -32,6 +35,18 @@ pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const WEIGHT_UNITS: f32 = 262144.0f32;
 pub const MOST: f32 = 128.0f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub edges: u32,
+    pub strength: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct EdgeLimit {
@@ -78,13 +93,6 @@ impl Stored for EdgeLimit {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub edges: u32,
-    pub strength: f32,
-}
-
 struct Memory<'a> {
     params: Params,
     positions: &'a [u32],
@@ -128,10 +136,10 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let limits = bound.read::<u32>(1);
-    let mut proximal = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let limits = bound.read(1);
+    let mut proximal = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -143,4 +151,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

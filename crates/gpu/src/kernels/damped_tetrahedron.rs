@@ -1,6 +1,8 @@
 // Written from `shader/damped_tetrahedron.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "damped_tetrahedron",
@@ -15,7 +17,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -27,6 +30,21 @@ pub const SVD_SWEEPS: u32 = 8u32;
 pub const NEGLIGIBLE: f32 = 1e-8f32;
 pub const SWEEPS: u32 = 6u32;
 pub const ORDER: u32 = 9u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct ElementParams {
+    pub elements: u32,
+    pub first_block: u32,
+    pub absolute: u32,
+    pub rate: f32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Tetrahedron {
@@ -83,16 +101,6 @@ impl Stored for Tetrahedron {
         self.viscous_mu.store(words, at + 18);
         self.padding.store(words, at + 19);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct ElementParams {
-    pub elements: u32,
-    pub first_block: u32,
-    pub absolute: u32,
-    pub rate: f32,
-    pub quantum: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -1285,11 +1293,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let tetrahedra = bound.read::<u32>(0);
-    let positions = bound.read::<u32>(1);
-    let start = bound.read::<u32>(2);
-    let mut blocks = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let tetrahedra = bound.read(0);
+    let positions = bound.read(1);
+    let start = bound.read(2);
+    let mut blocks = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         tetrahedra: &tetrahedra,
@@ -1302,4 +1310,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

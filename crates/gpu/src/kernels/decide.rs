@@ -1,6 +1,8 @@
 // Written from `shader/decide.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "decide",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -48,6 +51,11 @@ pub struct Params {
     pub after: u32,
     pub dispatches: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -278,10 +286,10 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let mut control = bound.write::<u32>(0);
-    let mut reports = bound.write::<u32>(1);
-    let mut arguments = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let mut control = bound.write(0);
+    let mut reports = bound.write(1);
+    let mut arguments = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         control: &mut control,
@@ -293,4 +301,5 @@ fn run(bound: Bound<'_>) {
         m.shared_halted = 0u32;
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/descend.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "descend",
@@ -14,13 +16,33 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write, Write, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub const NONE: u32 = 4294967295u32;
 pub const DOMAIN_WORDS: u32 = 2304u32;
 pub const THREADS: u32 = 256u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub nodes: u32,
+    pub patches: u32,
+    pub grouped: u32,
+    pub start: u32,
+    pub workgroups: u32,
+    pub curvatures: u32,
+    pub norms: u32,
+    pub present: u32,
+    pub next: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct PatchSlot {
@@ -57,20 +79,6 @@ impl Stored for PatchSlot {
         self.arm.store(words, at + 7);
         self.link.store(words, at + 10);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub nodes: u32,
-    pub patches: u32,
-    pub grouped: u32,
-    pub start: u32,
-    pub workgroups: u32,
-    pub curvatures: u32,
-    pub norms: u32,
-    pub present: u32,
-    pub next: u32,
 }
 
 struct Memory<'a> {
@@ -557,15 +565,15 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let slots = bound.read::<u32>(0);
-    let domains = bound.read::<u32>(1);
-    let direction = bound.read::<u32>(2);
-    let mut image = bound.write::<u32>(3);
-    let mut solution = bound.write::<u32>(4);
-    let mut forces = bound.write::<u32>(5);
-    let mut sums = bound.write::<u32>(6);
-    let mut progress = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let slots = bound.read(0);
+    let domains = bound.read(1);
+    let direction = bound.read(2);
+    let mut image = bound.write(3);
+    let mut solution = bound.write(4);
+    let mut forces = bound.write(5);
+    let mut sums = bound.write(6);
+    let mut progress = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         slots: &slots,
@@ -594,4 +602,5 @@ fn run(bound: Bound<'_>) {
         m.motions = [0.0f32; 192];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/diagonal.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "diagonal",
@@ -10,7 +12,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -22,6 +25,11 @@ pub const BLOCK_WORDS: u32 = 10u32;
 pub struct Params {
     pub nodes: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -143,10 +151,10 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let slices = bound.read::<u32>(0);
-    let words = bound.read::<u32>(1);
-    let mut diagonal = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let slices = bound.read(0);
+    let words = bound.read(1);
+    let mut diagonal = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         slices: &slices,
@@ -158,4 +166,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

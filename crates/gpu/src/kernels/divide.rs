@@ -1,6 +1,8 @@
 // Written from `shader/divide.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "divide",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -30,6 +33,19 @@ pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const LATTICES: u32 = 4u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub shift: u32,
+    pub buckets: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Row {
@@ -98,14 +114,6 @@ impl Stored for Row {
         self.friction.store(words, at + 20);
         self.bucket.store(words, at + 23);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
-    pub shift: u32,
-    pub buckets: u32,
 }
 
 struct Memory<'a> {
@@ -245,12 +253,12 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let displacements = bound.read::<u32>(1);
-    let mut rows = bound.write::<u32>(2);
-    let mut tally = bound.write::<u32>(3);
-    let mut control = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let displacements = bound.read(1);
+    let mut rows = bound.write(2);
+    let mut tally = bound.write(3);
+    let mut control = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -264,4 +272,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

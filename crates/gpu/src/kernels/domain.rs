@@ -1,6 +1,8 @@
 // Written from `shader/domain.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "domain",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 192,
     bindings: &[Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -33,6 +36,11 @@ pub struct Params {
     pub parts: u32,
     pub springs: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -345,13 +353,13 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let tables = bound.read::<u32>(0);
-    let couplings = bound.read::<u32>(1);
-    let touching = bound.read::<u32>(2);
-    let pressed = bound.read::<u32>(3);
-    let frames = bound.read::<u32>(4);
-    let mut inverses = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let tables = bound.read(0);
+    let couplings = bound.read(1);
+    let touching = bound.read(2);
+    let pressed = bound.read(3);
+    let frames = bound.read(4);
+    let mut inverses = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         tables: &tables,
@@ -372,4 +380,5 @@ fn run(bound: Bound<'_>) {
         m.diagonal = [0.0f32; 48];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/enlist.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "enlist",
@@ -14,7 +16,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -34,6 +37,18 @@ pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const ON_BORDER: f32 = 1e-6f32;
 pub const NOT_PRESSING: u32 = 2147483648u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub mask: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Candidate {
@@ -169,13 +184,6 @@ impl Contact {
         is_shared: false,
         vertices: [0u32; 3],
     };
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
-    pub mask: u32,
 }
 
 struct Memory<'a> {
@@ -437,15 +445,15 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let edges = bound.read::<u32>(0);
-    let triangles = bound.read::<u32>(1);
-    let candidates = bound.read::<u32>(2);
-    let separations = bound.read::<u32>(3);
-    let states = bound.read::<u32>(4);
-    let starts = bound.read::<u32>(5);
-    let mut table = bound.write::<u32>(6);
-    let mut control = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let edges = bound.read(0);
+    let triangles = bound.read(1);
+    let candidates = bound.read(2);
+    let separations = bound.read(3);
+    let states = bound.read(4);
+    let starts = bound.read(5);
+    let mut table = bound.write(6);
+    let mut control = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         edges: &edges,
@@ -462,4 +470,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/facing.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "facing",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -43,6 +46,19 @@ pub const FLAT_TOLERANCE: f32 = 0.002f32;
 pub const CLOSE: f32 = 1.001f32;
 pub const SHARE: f32 = 0.9f32;
 pub const LEAST_SHARE: f32 = 0.5f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub edges_first: u32,
+    pub triangles_first: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Candidate {
@@ -210,14 +226,6 @@ impl Stored for Pair {
         self.side_a.store(words, at + 2);
         self.vertices.store(words, at + 3);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
-    pub edges_first: u32,
-    pub triangles_first: u32,
 }
 
 #[derive(Clone, Copy)]
@@ -607,15 +615,15 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let edges = bound.read::<u32>(1);
-    let triangles = bound.read::<u32>(2);
-    let adjacency = bound.read::<u32>(3);
-    let candidates = bound.read::<u32>(4);
-    let states = bound.read::<u32>(5);
-    let mut separations = bound.write::<u32>(6);
-    let mut control = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let edges = bound.read(1);
+    let triangles = bound.read(2);
+    let adjacency = bound.read(3);
+    let candidates = bound.read(4);
+    let states = bound.read(5);
+    let mut separations = bound.write(6);
+    let mut control = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -632,4 +640,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

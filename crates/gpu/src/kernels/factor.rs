@@ -1,6 +1,8 @@
 // Written from `shader/factor.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "factor",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -38,6 +41,11 @@ pub const LARGE: f32 = 1000000.0f32;
 pub struct Params {
     pub blocks: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -107,9 +115,9 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let sums = bound.read::<u32>(0);
-    let mut factor = bound.write::<u32>(1);
+pub fn run(bound: Bound<'_>) {
+    let sums = bound.read(0);
+    let mut factor = bound.write(1);
     let mut m = Memory {
         params: bound.params(),
         sums: &sums,
@@ -120,4 +128,5 @@ fn run(bound: Bound<'_>) {
         m.shared_sums = [[0.0f32; 2]; 256];
         main(&mut m, group as u32);
     }
+}
 }

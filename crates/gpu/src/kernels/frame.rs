@@ -1,6 +1,8 @@
 // Written from `shader/frame.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "frame",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -23,6 +26,23 @@ pub const NEGLIGIBLE: f32 = 1e-8f32;
 pub const SWEEPS: u32 = 6u32;
 pub const ORDER: u32 = 3u32;
 pub const SMALLEST_MOMENT: f32 = 0.0001f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub count: u32,
+    pub first: u32,
+    pub first_part: u32,
+    pub parts: u32,
+    pub width: u32,
+    pub first_domain: u32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Frame {
@@ -59,18 +79,6 @@ impl Stored for Frame {
         self.moment.store(words, at + 4);
         self.held.store(words, at + 10);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub count: u32,
-    pub first: u32,
-    pub first_part: u32,
-    pub parts: u32,
-    pub width: u32,
-    pub first_domain: u32,
-    pub quantum: f32,
 }
 
 struct Memory<'a> {
@@ -760,11 +768,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let mut slots = bound.write::<u32>(1);
-    let mut frames = bound.write::<u32>(2);
-    let mut links = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let mut slots = bound.write(1);
+    let mut frames = bound.write(2);
+    let mut links = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -777,4 +785,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/gather.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "gather",
@@ -10,7 +12,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -21,6 +24,11 @@ pub struct Params {
     pub nodes: u32,
     pub width: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -73,10 +81,10 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let nodes = bound.read::<u32>(0);
-    let source = bound.read::<u32>(1);
-    let mut copy = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let nodes = bound.read(0);
+    let source = bound.read(1);
+    let mut copy = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         nodes: &nodes,
@@ -88,4 +96,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/gather_gradient.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "gather_gradient",
@@ -11,10 +13,23 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct NodeParams {
+    pub nodes: u32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Pair {
@@ -43,13 +58,6 @@ impl Stored for Pair {
         self.node.store(words, at + 0);
         self.value.store(words, at + 1);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct NodeParams {
-    pub nodes: u32,
-    pub quantum: f32,
 }
 
 struct Memory<'a> {
@@ -162,15 +170,15 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let ranges = bound.read::<u32>(0);
-    let sources = bound.read::<u32>(1);
-    let gradients = bound.read::<u32>(2);
-    let pairs = bound.read::<u32>(3);
-    let terms = bound.read::<u32>(4);
-    let positions = bound.read::<u32>(5);
-    let start = bound.read::<u32>(6);
-    let mut gradient = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let ranges = bound.read(0);
+    let sources = bound.read(1);
+    let gradients = bound.read(2);
+    let pairs = bound.read(3);
+    let terms = bound.read(4);
+    let positions = bound.read(5);
+    let start = bound.read(6);
+    let mut gradient = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         ranges: &ranges,
@@ -187,4 +195,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

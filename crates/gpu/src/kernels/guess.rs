@@ -1,6 +1,8 @@
 // Written from `shader/guess.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "guess",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -23,6 +26,11 @@ pub struct Params {
     pub count: u32,
     pub quantum: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -93,13 +101,13 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let iterate = bound.read::<u32>(0);
-    let inertial = bound.read::<u32>(1);
-    let last = bound.read::<u32>(2);
-    let free = bound.read::<u32>(3);
-    let mut direction = bound.write::<u32>(4);
-    let mut second = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let iterate = bound.read(0);
+    let inertial = bound.read(1);
+    let last = bound.read(2);
+    let free = bound.read(3);
+    let mut direction = bound.write(4);
+    let mut second = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         iterate: &iterate,
@@ -114,4 +122,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/impose.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "impose",
@@ -10,7 +12,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -21,6 +24,11 @@ pub struct Params {
     pub nodes: u32,
     pub quantum: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -53,9 +61,9 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let imposed = bound.read::<u32>(0);
-    let mut direction = bound.write::<u32>(1);
+pub fn run(bound: Bound<'_>) {
+    let imposed = bound.read(0);
+    let mut direction = bound.write(1);
     let mut m = Memory {
         params: bound.params(),
         imposed: &imposed,
@@ -66,4 +74,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

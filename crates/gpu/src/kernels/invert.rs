@@ -1,6 +1,8 @@
 // Written from `shader/invert.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "invert",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -25,6 +28,11 @@ pub struct Params {
     pub slots: u32,
     pub springs: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -162,11 +170,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let diagonal = bound.read::<u32>(0);
-    let springs = bound.read::<u32>(1);
-    let spring_words = bound.read::<u32>(2);
-    let mut slots = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let diagonal = bound.read(0);
+    let springs = bound.read(1);
+    let spring_words = bound.read(2);
+    let mut slots = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         diagonal: &diagonal,
@@ -179,4 +187,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

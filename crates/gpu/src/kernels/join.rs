@@ -1,6 +1,8 @@
 // Written from `shader/join.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "join",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -35,6 +38,11 @@ pub const FIXED: u32 = 65535u32;
 pub struct Params {
     pub vertices: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -86,11 +94,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let vertices = bound.read::<u32>(0);
-    let group_caps = bound.read::<u32>(1);
-    let mut paths = bound.write::<u32>(2);
-    let mut alphas = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let vertices = bound.read(0);
+    let group_caps = bound.read(1);
+    let mut paths = bound.write(2);
+    let mut alphas = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         vertices: &vertices,
@@ -103,4 +111,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

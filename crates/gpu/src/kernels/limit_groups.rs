@@ -1,6 +1,8 @@
 // Written from `shader/limit_groups.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "limit_groups",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -35,6 +38,11 @@ pub const FIXED: u32 = 65535u32;
 pub struct Params {
     pub vertices: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -69,10 +77,10 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let vertices = bound.read::<u32>(0);
-    let alphas = bound.read::<u32>(1);
-    let mut group_alphas = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let vertices = bound.read(0);
+    let alphas = bound.read(1);
+    let mut group_alphas = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         vertices: &vertices,
@@ -84,4 +92,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

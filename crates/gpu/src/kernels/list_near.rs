@@ -1,6 +1,8 @@
 // Written from `shader/list_near.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "list_near",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,18 @@ pub const EDGE_EDGE: u32 = 3u32;
 pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub near_capacity: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Candidate {
@@ -57,13 +72,6 @@ impl Stored for Candidate {
         self.kind_and_a.store(words, at + 0);
         self.b.store(words, at + 1);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
-    pub near_capacity: u32,
 }
 
 struct Memory<'a> {
@@ -112,11 +120,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let starts = bound.read::<u32>(0);
-    let candidates = bound.read::<u32>(1);
-    let mut near = bound.write::<u32>(2);
-    let mut control = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let starts = bound.read(0);
+    let candidates = bound.read(1);
+    let mut near = bound.write(2);
+    let mut control = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         starts: &starts,
@@ -129,4 +137,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/membrane.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "membrane",
@@ -14,7 +16,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -24,6 +27,21 @@ pub const MIN_RATIO: f32 = 0.05f32;
 pub const NEGLIGIBLE: f32 = 1e-8f32;
 pub const SWEEPS: u32 = 6u32;
 pub const ORDER: u32 = 4u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct ElementParams {
+    pub elements: u32,
+    pub first_block: u32,
+    pub absolute: u32,
+    pub rate: f32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Membrane {
@@ -68,16 +86,6 @@ impl Stored for Membrane {
         self.damping.store(words, at + 12);
         self.padding.store(words, at + 13);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct ElementParams {
-    pub elements: u32,
-    pub first_block: u32,
-    pub absolute: u32,
-    pub rate: f32,
-    pub quantum: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -953,11 +961,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let membranes = bound.read::<u32>(0);
-    let positions = bound.read::<u32>(1);
-    let start = bound.read::<u32>(2);
-    let mut blocks = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let membranes = bound.read(0);
+    let positions = bound.read(1);
+    let start = bound.read(2);
+    let mut blocks = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         membranes: &membranes,
@@ -970,4 +978,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/momenta.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "momenta",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -24,6 +27,11 @@ pub struct Params {
     pub nodes: u32,
     pub quantum: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -171,13 +179,13 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let blocks = bound.read::<u32>(0);
-    let iterate = bound.read::<u32>(1);
-    let start = bound.read::<u32>(2);
-    let row_sums = bound.read::<u32>(3);
-    let step = bound.read::<u32>(4);
-    let mut totals = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let blocks = bound.read(0);
+    let iterate = bound.read(1);
+    let start = bound.read(2);
+    let row_sums = bound.read(3);
+    let step = bound.read(4);
+    let mut totals = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         blocks: &blocks,
@@ -194,4 +202,5 @@ fn run(bound: Bound<'_>) {
         m.shared_segments = [0u32; 256];
         main(&mut m, group as u32);
     }
+}
 }

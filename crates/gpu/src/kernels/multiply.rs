@@ -1,6 +1,8 @@
 // Written from `shader/multiply.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "multiply",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -21,6 +24,19 @@ pub const DOMAIN_WORDS: u32 = 2304u32;
 pub const THREADS: u32 = 256u32;
 pub const SLICE: u32 = 32u32;
 pub const BLOCK_WORDS: u32 = 10u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub nodes: u32,
+    pub springs: u32,
+    pub workgroups: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Spring {
@@ -53,14 +69,6 @@ impl Stored for Spring {
         self.weights.store(words, at + 4);
         self.hessian.store(words, at + 8);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub nodes: u32,
-    pub springs: u32,
-    pub workgroups: u32,
 }
 
 struct Memory<'a> {
@@ -308,15 +316,15 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let slices = bound.read::<u32>(0);
-    let words = bound.read::<u32>(1);
-    let spring_words = bound.read::<u32>(2);
-    let springs = bound.read::<u32>(3);
-    let direction = bound.read::<u32>(4);
-    let mut image = bound.write::<u32>(5);
-    let mut sums = bound.write::<u32>(6);
-    let mut progress = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let slices = bound.read(0);
+    let words = bound.read(1);
+    let spring_words = bound.read(2);
+    let springs = bound.read(3);
+    let direction = bound.read(4);
+    let mut image = bound.write(5);
+    let mut sums = bound.write(6);
+    let mut progress = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         slices: &slices,
@@ -335,4 +343,5 @@ fn run(bound: Bound<'_>) {
         m.is_moving = 0u32;
         main(&mut m, group as u32);
     }
+}
 }

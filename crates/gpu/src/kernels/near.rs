@@ -1,6 +1,8 @@
 // Written from `shader/near.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "near",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -32,6 +35,17 @@ pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const LARGER: f32 = 1.000001f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Candidate {
@@ -97,12 +111,6 @@ impl Stored for Pair {
         self.side_a.store(words, at + 2);
         self.vertices.store(words, at + 3);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
 }
 
 struct Memory<'a> {
@@ -215,14 +223,14 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let edges = bound.read::<u32>(0);
-    let triangles = bound.read::<u32>(1);
-    let vertices = bound.read::<u32>(2);
-    let candidates = bound.read::<u32>(3);
-    let separations = bound.read::<u32>(4);
-    let mut starts = bound.write::<u32>(5);
-    let mut control = bound.write::<u32>(6);
+pub fn run(bound: Bound<'_>) {
+    let edges = bound.read(0);
+    let triangles = bound.read(1);
+    let vertices = bound.read(2);
+    let candidates = bound.read(3);
+    let separations = bound.read(4);
+    let mut starts = bound.write(5);
+    let mut control = bound.write(6);
     let mut m = Memory {
         params: bound.params(),
         edges: &edges,
@@ -238,4 +246,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

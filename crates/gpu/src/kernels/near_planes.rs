@@ -1,6 +1,8 @@
 // Written from `shader/near_planes.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "near_planes",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -30,6 +33,21 @@ pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const POINT_ROUNDING: f32 = 1.0f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub queries: u32,
+    pub planes: u32,
+    pub first_row: u32,
+    pub lists: u32,
+    pub capacity: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Ball {
@@ -163,16 +181,6 @@ impl Stored for Plane {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub queries: u32,
-    pub planes: u32,
-    pub first_row: u32,
-    pub lists: u32,
-    pub capacity: u32,
-}
-
 struct Memory<'a> {
     params: Params,
     queries: &'a [u32],
@@ -291,14 +299,14 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let queries = bound.read::<u32>(0);
-    let planes = bound.read::<u32>(1);
-    let balls = bound.read::<u32>(2);
-    let vertices = bound.read::<u32>(3);
-    let mut starts = bound.write::<u32>(4);
-    let mut candidates = bound.write::<u32>(5);
-    let mut control = bound.write::<u32>(6);
+pub fn run(bound: Bound<'_>) {
+    let queries = bound.read(0);
+    let planes = bound.read(1);
+    let balls = bound.read(2);
+    let vertices = bound.read(3);
+    let mut starts = bound.write(4);
+    let mut candidates = bound.write(5);
+    let mut control = bound.write(6);
     let mut m = Memory {
         params: bound.params(),
         queries: &queries,
@@ -314,4 +322,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/negate.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "negate",
@@ -15,7 +17,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -31,6 +34,11 @@ pub struct Params {
     pub imposed: u32,
     pub workgroups: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -178,14 +186,14 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let gradient = bound.read::<u32>(0);
-    let image = bound.read::<u32>(1);
-    let springs = bound.read::<u32>(2);
-    let spring_words = bound.read::<u32>(3);
-    let free = bound.read::<u32>(4);
-    let mut right_side = bound.write::<u32>(5);
-    let mut sums = bound.write::<u32>(6);
+pub fn run(bound: Bound<'_>) {
+    let gradient = bound.read(0);
+    let image = bound.read(1);
+    let springs = bound.read(2);
+    let spring_words = bound.read(3);
+    let free = bound.read(4);
+    let mut right_side = bound.write(5);
+    let mut sums = bound.write(6);
     let mut m = Memory {
         params: bound.params(),
         gradient: &gradient,
@@ -203,4 +211,5 @@ fn run(bound: Bound<'_>) {
         m.shared_largest = [0.0f32; 256];
         main(&mut m, group as u32);
     }
+}
 }

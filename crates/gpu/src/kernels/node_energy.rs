@@ -1,6 +1,8 @@
 // Written from `shader/node_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "node_energy",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -27,6 +30,11 @@ pub struct EnergyParams {
     pub rate: f32,
     pub quantum: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Pair {
@@ -226,14 +234,14 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     put_part(m, std::array::from_fn::<_, 64, _>(|t| ([group, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| ([t as u32, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| _e29[t]));
 }
 
-fn run(bound: Bound<'_>) {
-    let ranges = bound.read::<u32>(0);
-    let pairs = bound.read::<u32>(1);
-    let terms = bound.read::<u32>(2);
-    let reference = bound.read::<u32>(3);
-    let trial = bound.read::<u32>(4);
-    let start = bound.read::<u32>(5);
-    let mut parts = bound.write::<u32>(6);
+pub fn run(bound: Bound<'_>) {
+    let ranges = bound.read(0);
+    let pairs = bound.read(1);
+    let terms = bound.read(2);
+    let reference = bound.read(3);
+    let trial = bound.read(4);
+    let start = bound.read(5);
+    let mut parts = bound.write(6);
     let mut m = Memory {
         params: bound.params(),
         ranges: &ranges,
@@ -249,4 +257,5 @@ fn run(bound: Bound<'_>) {
         m.shared_parts = [[0.0f32; 4]; 64];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/place.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "place",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -40,6 +43,11 @@ pub struct Params {
     pub rows: u32,
     pub list: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -103,10 +111,10 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let blocks = bound.read::<u32>(0);
-    let mut starts = bound.write::<u32>(1);
-    let mut control = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let blocks = bound.read(0);
+    let mut starts = bound.write(1);
+    let mut control = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         blocks: &blocks,
@@ -120,4 +128,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

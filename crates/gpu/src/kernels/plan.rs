@@ -1,6 +1,8 @@
 // Written from `shader/plan.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "plan",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,18 @@ pub const EDGE_EDGE: u32 = 3u32;
 pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub vertices: u32,
+    pub longest: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Vertex {
@@ -99,13 +114,6 @@ impl Stored for Vertex {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub vertices: u32,
-    pub longest: f32,
-}
-
 struct Memory<'a> {
     params: Params,
     positions: &'a [u32],
@@ -158,12 +166,12 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let targets = bound.read::<u32>(1);
-    let vertices = bound.read::<u32>(2);
-    let mut paths = bound.write::<u32>(3);
-    let mut group_caps = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let targets = bound.read(1);
+    let vertices = bound.read(2);
+    let mut paths = bound.write(3);
+    let mut group_caps = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -177,4 +185,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

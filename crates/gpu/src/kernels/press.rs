@@ -1,6 +1,8 @@
 // Written from `shader/press.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "press",
@@ -12,13 +14,27 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub const NONE: u32 = 4294967295u32;
 pub const DOMAIN_WORDS: u32 = 2304u32;
 pub const BATCH: u32 = 32u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub chunks: u32,
+    pub first: u32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Spring {
@@ -88,14 +104,6 @@ impl Stored for Frame {
         self.moment.store(words, at + 4);
         self.held.store(words, at + 10);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub chunks: u32,
-    pub first: u32,
-    pub quantum: f32,
 }
 
 #[derive(Clone, Copy)]
@@ -450,13 +458,13 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let springs = bound.read::<u32>(0);
-    let touching = bound.read::<u32>(1);
-    let places = bound.read::<u32>(2);
-    let positions = bound.read::<u32>(3);
-    let frames = bound.read::<u32>(4);
-    let mut pressed = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let springs = bound.read(0);
+    let touching = bound.read(1);
+    let places = bound.read(2);
+    let positions = bound.read(3);
+    let frames = bound.read(4);
+    let mut pressed = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         springs: &springs,
@@ -475,4 +483,5 @@ fn run(bound: Bound<'_>) {
         m.arms = [[0.0f32; 4]; 128];
         main(&mut m, group as u32);
     }
+}
 }

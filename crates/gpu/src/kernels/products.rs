@@ -1,6 +1,8 @@
 // Written from `shader/products.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "products",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -23,6 +26,11 @@ pub const NO_SEGMENT: u32 = 4294967295u32;
 pub struct Params {
     pub nodes: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -156,11 +164,11 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let blocks = bound.read::<u32>(0);
-    let solution = bound.read::<u32>(1);
-    let direction = bound.read::<u32>(2);
-    let mut totals = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let blocks = bound.read(0);
+    let solution = bound.read(1);
+    let direction = bound.read(2);
+    let mut totals = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         blocks: &blocks,
@@ -175,4 +183,5 @@ fn run(bound: Bound<'_>) {
         m.shared_segments = [0u32; 256];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/recall.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "recall",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -36,6 +39,11 @@ pub struct Params {
     pub vertices: u32,
     pub table: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -89,11 +97,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let aims = bound.read::<u32>(1);
-    let mut displacements = bound.write::<u32>(2);
-    let mut table = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let aims = bound.read(1);
+    let mut displacements = bound.write(2);
+    let mut table = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -106,4 +114,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/redirect.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "redirect",
@@ -13,13 +15,33 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Write, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub const NONE: u32 = 4294967295u32;
 pub const DOMAIN_WORDS: u32 = 2304u32;
 pub const THREADS: u32 = 256u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub patches: u32,
+    pub grouped: u32,
+    pub start: u32,
+    pub workgroups: u32,
+    pub levels: u32,
+    pub norms: u32,
+    pub present: u32,
+    pub next: u32,
+    pub firsts: [[u32; 4]; 3],
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct PatchSlot {
@@ -56,20 +78,6 @@ impl Stored for PatchSlot {
         self.arm.store(words, at + 7);
         self.link.store(words, at + 10);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub patches: u32,
-    pub grouped: u32,
-    pub start: u32,
-    pub workgroups: u32,
-    pub levels: u32,
-    pub norms: u32,
-    pub present: u32,
-    pub next: u32,
-    pub firsts: [[u32; 4]; 3],
 }
 
 struct Memory<'a> {
@@ -345,14 +353,14 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let slots = bound.read::<u32>(0);
-    let links = bound.read::<u32>(1);
-    let group_motions = bound.read::<u32>(2);
-    let image = bound.read::<u32>(3);
-    let mut direction = bound.write::<u32>(4);
-    let sums = bound.read::<u32>(5);
-    let mut progress = bound.write::<u32>(6);
+pub fn run(bound: Bound<'_>) {
+    let slots = bound.read(0);
+    let links = bound.read(1);
+    let group_motions = bound.read(2);
+    let image = bound.read(3);
+    let mut direction = bound.write(4);
+    let sums = bound.read(5);
+    let mut progress = bound.write(6);
     let mut m = Memory {
         params: bound.params(),
         slots: &slots,
@@ -376,4 +384,5 @@ fn run(bound: Bound<'_>) {
         m.spins = [[0.0f32; 3]; 32];
         main(&mut m, group as u32);
     }
+}
 }

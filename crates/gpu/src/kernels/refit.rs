@@ -1,6 +1,8 @@
 // Written from `shader/refit.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "refit",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,20 @@ pub const EDGE_EDGE: u32 = 3u32;
 pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub first: u32,
+    pub nodes: u32,
+    pub first_child: u32,
+    pub children: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct NodeBox {
@@ -65,15 +82,6 @@ impl Stored for NodeBox {
         self.high.store(words, at + 4);
         self.padding.store(words, at + 7);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub first: u32,
-    pub nodes: u32,
-    pub first_child: u32,
-    pub children: u32,
 }
 
 struct Memory<'a> {
@@ -143,9 +151,9 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let mut boxes = bound.write::<u32>(0);
-    let mut control = bound.write::<u32>(1);
+pub fn run(bound: Bound<'_>) {
+    let mut boxes = bound.write(0);
+    let mut control = bound.write(1);
     let mut m = Memory {
         params: bound.params(),
         boxes: &mut boxes,
@@ -156,4 +164,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/release.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "release",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write, Write, Read, Read],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -34,6 +37,17 @@ pub const WEIGHT_UNITS: f32 = 262144.0f32;
 pub const MOST: f32 = 128.0f32;
 pub const MOST_PROXIMAL: f32 = 100.0f32;
 pub const MOST_IDLE_STEPS: u32 = 6u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub vertices: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Vertex {
@@ -104,12 +118,6 @@ impl Stored for Vertex {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub vertices: u32,
-}
-
 struct Memory<'a> {
     params: Params,
     positions: &'a [u32],
@@ -166,14 +174,14 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let targets = bound.read::<u32>(1);
-    let vertices = bound.read::<u32>(2);
-    let mut proximal = bound.write::<u32>(3);
-    let mut displacements = bound.write::<u32>(4);
-    let swings = bound.read::<u32>(5);
-    let late = bound.read::<u32>(6);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let targets = bound.read(1);
+    let vertices = bound.read(2);
+    let mut proximal = bound.write(3);
+    let mut displacements = bound.write(4);
+    let swings = bound.read(5);
+    let late = bound.read(6);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -189,4 +197,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/relieve.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "relieve",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -31,6 +34,17 @@ pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const ROUNDING: f32 = 9.536743e-7f32;
 pub const ON_GRID: f32 = 4.0f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Row {
@@ -99,12 +113,6 @@ impl Stored for Row {
         self.friction.store(words, at + 20);
         self.bucket.store(words, at + 23);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
 }
 
 struct Memory<'a> {
@@ -256,13 +264,13 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let displacements = bound.read::<u32>(1);
-    let candidates = bound.read::<u32>(2);
-    let separations = bound.read::<u32>(3);
-    let mut rows = bound.write::<u32>(4);
-    let mut control = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let displacements = bound.read(1);
+    let candidates = bound.read(2);
+    let separations = bound.read(3);
+    let mut rows = bound.write(4);
+    let mut control = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -277,4 +285,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

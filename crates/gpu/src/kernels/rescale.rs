@@ -1,6 +1,8 @@
 // Written from `shader/rescale.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "rescale",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Write, Write, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -37,6 +40,11 @@ pub struct Params {
     pub limits: u32,
     pub vertices: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -128,15 +136,15 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let factor = bound.read::<u32>(0);
-    let mut rows = bound.write::<u32>(1);
-    let mut limits = bound.write::<u32>(2);
-    let positions = bound.read::<u32>(3);
-    let targets = bound.read::<u32>(4);
-    let vertices = bound.read::<u32>(5);
-    let mut displacements = bound.write::<u32>(6);
-    let mut control = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let factor = bound.read(0);
+    let mut rows = bound.write(1);
+    let mut limits = bound.write(2);
+    let positions = bound.read(3);
+    let targets = bound.read(4);
+    let vertices = bound.read(5);
+    let mut displacements = bound.write(6);
+    let mut control = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         factor: &factor,
@@ -153,4 +161,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

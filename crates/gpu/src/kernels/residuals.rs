@@ -1,6 +1,8 @@
 // Written from `shader/residuals.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "residuals",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,17 @@ pub const EDGE_EDGE: u32 = 3u32;
 pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub blocks: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Block {
@@ -108,12 +122,6 @@ impl Stored for BlockSum {
     }
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub blocks: u32,
-}
-
 struct Memory<'a> {
     params: Params,
     blocks: &'a [u32],
@@ -188,13 +196,13 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let blocks = bound.read::<u32>(0);
-    let positions = bound.read::<u32>(1);
-    let aims = bound.read::<u32>(2);
-    let displacements = bound.read::<u32>(3);
-    let vertices = bound.read::<u32>(4);
-    let mut sums = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let blocks = bound.read(0);
+    let positions = bound.read(1);
+    let aims = bound.read(2);
+    let displacements = bound.read(3);
+    let vertices = bound.read(4);
+    let mut sums = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         blocks: &blocks,
@@ -209,4 +217,5 @@ fn run(bound: Bound<'_>) {
         m.shared_sums = [BlockSum::ZERO; 256];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/residue.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "residue",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -22,6 +25,11 @@ pub struct Params {
     pub nodes: u32,
     pub subtract: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -74,11 +82,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let right_side = bound.read::<u32>(0);
-    let image = bound.read::<u32>(1);
-    let solve = bound.read::<u32>(2);
-    let mut direction = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let right_side = bound.read(0);
+    let image = bound.read(1);
+    let solve = bound.read(2);
+    let mut direction = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         right_side: &right_side,
@@ -91,4 +99,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

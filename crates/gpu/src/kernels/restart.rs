@@ -1,6 +1,8 @@
 // Written from `shader/restart.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "restart",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -37,6 +40,11 @@ pub struct Params {
     pub again: u32,
     pub first: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -92,10 +100,10 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let mut group_caps = bound.write::<u32>(0);
-    let mut group_alphas = bound.write::<u32>(1);
-    let mut control = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let mut group_caps = bound.write(0);
+    let mut group_alphas = bound.write(1);
+    let mut control = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         group_caps: &mut group_caps,
@@ -107,4 +115,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

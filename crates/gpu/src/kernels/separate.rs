@@ -1,6 +1,8 @@
 // Written from `shader/separate.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "separate",
@@ -14,7 +16,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -35,6 +38,18 @@ pub const FIXED: u32 = 65535u32;
 pub const WIDTH_ROUNDING: f32 = 3.8146973e-6f32;
 pub const MIN_WIDTH_RATIO: f32 = 0.9f32;
 pub const POINT_ROUNDING: f32 = 1.0f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub after_search: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Candidate {
@@ -223,13 +238,6 @@ impl Stored for Pair {
         self.side_a.store(words, at + 2);
         self.vertices.store(words, at + 3);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
-    pub after_search: u32,
 }
 
 #[derive(Clone, Copy)]
@@ -761,14 +769,14 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let edges = bound.read::<u32>(1);
-    let triangles = bound.read::<u32>(2);
-    let planes = bound.read::<u32>(3);
-    let candidates = bound.read::<u32>(4);
-    let mut separations = bound.write::<u32>(5);
-    let mut control = bound.write::<u32>(6);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let edges = bound.read(1);
+    let triangles = bound.read(2);
+    let planes = bound.read(3);
+    let candidates = bound.read(4);
+    let mut separations = bound.write(5);
+    let mut control = bound.write(6);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -784,4 +792,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

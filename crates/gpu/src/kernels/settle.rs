@@ -1,6 +1,8 @@
 // Written from `shader/settle.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "settle",
@@ -14,7 +16,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -38,6 +41,11 @@ pub struct Params {
     pub own_tolerance: f32,
     pub min_scale: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -260,11 +268,11 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let sums = bound.read::<u32>(0);
-    let mut solve = bound.write::<u32>(1);
-    let mut progress = bound.write::<u32>(2);
-    let mut ended = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let sums = bound.read(0);
+    let mut solve = bound.write(1);
+    let mut progress = bound.write(2);
+    let mut ended = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         sums: &sums,
@@ -279,4 +287,5 @@ fn run(bound: Bound<'_>) {
         m.shared_largest = [0.0f32; 256];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/slack.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "slack",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -30,6 +33,20 @@ pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const SLIDES: f32 = 0.999999f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub blocks: u32,
+    pub capacity: u32,
+    pub limits: u32,
+    pub vertices: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Row {
@@ -143,15 +160,6 @@ impl Stored for EdgeLimit {
         self.multiplier.store(words, at + 4);
         self.longest.store(words, at + 7);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub blocks: u32,
-    pub capacity: u32,
-    pub limits: u32,
-    pub vertices: u32,
 }
 
 struct Memory<'a> {
@@ -338,15 +346,15 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let rows = bound.read::<u32>(0);
-    let limits = bound.read::<u32>(1);
-    let positions = bound.read::<u32>(2);
-    let targets = bound.read::<u32>(3);
-    let vertices = bound.read::<u32>(4);
-    let displacements = bound.read::<u32>(5);
-    let mut control = bound.write::<u32>(6);
-    let mut sums = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let rows = bound.read(0);
+    let limits = bound.read(1);
+    let positions = bound.read(2);
+    let targets = bound.read(3);
+    let vertices = bound.read(4);
+    let displacements = bound.read(5);
+    let mut control = bound.write(6);
+    let mut sums = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         rows: &rows,
@@ -363,4 +371,5 @@ fn run(bound: Bound<'_>) {
         m.shared_sums = [[0.0f32; 2]; 256];
         main(&mut m, group as u32);
     }
+}
 }

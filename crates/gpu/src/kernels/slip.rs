@@ -1,6 +1,8 @@
 // Written from `shader/slip.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "slip",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,19 @@ pub const EDGE_EDGE: u32 = 3u32;
 pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub pair_frictions: u32,
+    pub first_half_space: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Candidate {
@@ -90,14 +106,6 @@ impl Stored for PairFriction {
         self.b.store(words, at + 1);
         self.coefficient.store(words, at + 2);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
-    pub pair_frictions: u32,
-    pub first_half_space: u32,
 }
 
 struct Memory<'a> {
@@ -256,15 +264,15 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let slip_start = bound.read::<u32>(1);
-    let vertices = bound.read::<u32>(2);
-    let pair_frictions = bound.read::<u32>(3);
-    let candidates = bound.read::<u32>(4);
-    let states = bound.read::<u32>(5);
-    let mut rows = bound.write::<u32>(6);
-    let mut control = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let slip_start = bound.read(1);
+    let vertices = bound.read(2);
+    let pair_frictions = bound.read(3);
+    let candidates = bound.read(4);
+    let states = bound.read(5);
+    let mut rows = bound.write(6);
+    let mut control = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -281,4 +289,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/sort.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "sort",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -35,6 +38,11 @@ pub const FIXED: u32 = 65535u32;
 pub struct Params {
     pub capacity: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -72,12 +80,12 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let rows = bound.read::<u32>(0);
-    let buckets = bound.read::<u32>(1);
-    let mut tally = bound.write::<u32>(2);
-    let mut order = bound.write::<u32>(3);
-    let mut control = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let rows = bound.read(0);
+    let buckets = bound.read(1);
+    let mut tally = bound.write(2);
+    let mut order = bound.write(3);
+    let mut control = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         rows: &rows,
@@ -91,4 +99,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

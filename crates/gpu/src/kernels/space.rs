@@ -1,6 +1,8 @@
 // Written from `shader/space.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "space",
@@ -14,7 +16,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -34,6 +37,25 @@ pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const MIN_SEPARATION_SHARE: f32 = 0.1f32;
 pub const MIN_SEPARATION_MARGIN: f32 = 1.5f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub after_search: u32,
+    pub min_separation: f32,
+    pub growth: f32,
+    pub range: f32,
+    pub first_half_space: u32,
+    pub known: f32,
+    pub guarded: f32,
+    pub guarded_floor: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Vertex {
@@ -299,20 +321,6 @@ impl Stored for Pair {
         self.side_a.store(words, at + 2);
         self.vertices.store(words, at + 3);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub capacity: u32,
-    pub after_search: u32,
-    pub min_separation: f32,
-    pub growth: f32,
-    pub range: f32,
-    pub first_half_space: u32,
-    pub known: f32,
-    pub guarded: f32,
-    pub guarded_floor: f32,
 }
 
 struct Memory<'a> {
@@ -790,15 +798,15 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let rest = bound.read::<u32>(0);
-    let edges = bound.read::<u32>(1);
-    let triangles = bound.read::<u32>(2);
-    let vertices = bound.read::<u32>(3);
-    let candidates = bound.read::<u32>(4);
-    let mut separations = bound.write::<u32>(5);
-    let mut states = bound.write::<u32>(6);
-    let mut control = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let rest = bound.read(0);
+    let edges = bound.read(1);
+    let triangles = bound.read(2);
+    let vertices = bound.read(3);
+    let candidates = bound.read(4);
+    let mut separations = bound.write(5);
+    let mut states = bound.write(6);
+    let mut control = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         rest: &rest,
@@ -815,4 +823,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/start_buckets.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "start_buckets",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -30,6 +33,17 @@ pub const EDGE_EDGE: u32 = 3u32;
 pub const VERTEX_HALF_SPACE: u32 = 4u32;
 pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub buckets: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Bucket {
@@ -66,12 +80,6 @@ impl Stored for Bucket {
         self.colors.store(words, at + 2);
         self.most.store(words, at + 3);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub buckets: u32,
 }
 
 struct Memory<'a> {
@@ -190,9 +198,9 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let tally = bound.read::<u32>(0);
-    let mut buckets = bound.write::<u32>(1);
+pub fn run(bound: Bound<'_>) {
+    let tally = bound.read(0);
+    let mut buckets = bound.write(1);
     let mut m = Memory {
         params: bound.params(),
         tally: &tally,
@@ -203,4 +211,5 @@ fn run(bound: Bound<'_>) {
         m.sums = [0u32; 256];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/strand.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "strand",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -30,6 +33,11 @@ pub struct ElementParams {
     pub rate: f32,
     pub quantum: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Strand {
@@ -312,12 +320,12 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let strands = bound.read::<u32>(0);
-    let positions = bound.read::<u32>(1);
-    let start = bound.read::<u32>(2);
-    let mut blocks = bound.write::<u32>(3);
-    let mut curvatures = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let strands = bound.read(0);
+    let positions = bound.read(1);
+    let start = bound.read(2);
+    let mut blocks = bound.write(3);
+    let mut curvatures = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         strands: &strands,
@@ -331,4 +339,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

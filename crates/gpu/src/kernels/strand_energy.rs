@@ -1,6 +1,8 @@
 // Written from `shader/strand_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "strand_energy",
@@ -14,7 +16,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -32,6 +35,11 @@ pub struct EnergyParams {
     pub rate: f32,
     pub quantum: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Strand {
@@ -266,12 +274,12 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     put_part(m, std::array::from_fn::<_, 64, _>(|t| ([group, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| ([t as u32, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| _e32[t]));
 }
 
-fn run(bound: Bound<'_>) {
-    let strands = bound.read::<u32>(0);
-    let reference = bound.read::<u32>(1);
-    let trial = bound.read::<u32>(2);
-    let start = bound.read::<u32>(3);
-    let mut parts = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let strands = bound.read(0);
+    let reference = bound.read(1);
+    let trial = bound.read(2);
+    let start = bound.read(3);
+    let mut parts = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         strands: &strands,
@@ -285,4 +293,5 @@ fn run(bound: Bound<'_>) {
         m.shared_parts = [[0.0f32; 4]; 64];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/strand_gradient.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "strand_gradient",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -29,6 +32,11 @@ pub struct GradientParams {
     pub rate: f32,
     pub quantum: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Strand {
@@ -191,11 +199,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let strands = bound.read::<u32>(0);
-    let positions = bound.read::<u32>(1);
-    let start = bound.read::<u32>(2);
-    let mut gradients = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let strands = bound.read(0);
+    let positions = bound.read(1);
+    let start = bound.read(2);
+    let mut gradients = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         strands: &strands,
@@ -208,4 +216,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/strand_product.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "strand_product",
@@ -12,12 +14,24 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub const NONE: u32 = 4294967295u32;
 pub const DOMAIN_WORDS: u32 = 2304u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub rows: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Strand {
@@ -91,12 +105,6 @@ impl Stored for Curvature {
         self.axial.store(words, at + 3);
         self.across.store(words, at + 4);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub rows: u32,
 }
 
 struct Memory<'a> {
@@ -190,13 +198,13 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let strands = bound.read::<u32>(0);
-    let curvatures = bound.read::<u32>(1);
-    let rows = bound.read::<u32>(2);
-    let direction = bound.read::<u32>(3);
-    let mut image = bound.write::<u32>(4);
-    let mut progress = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let strands = bound.read(0);
+    let curvatures = bound.read(1);
+    let rows = bound.read(2);
+    let direction = bound.read(3);
+    let mut image = bound.write(4);
+    let mut progress = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         strands: &strands,
@@ -211,4 +219,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

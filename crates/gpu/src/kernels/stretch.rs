@@ -1,6 +1,8 @@
 // Written from `shader/stretch.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "stretch",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -37,6 +40,11 @@ pub const WORDS: u32 = 1u32;
 pub struct Params {
     pub edges: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -150,10 +158,10 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let limits = bound.read::<u32>(1);
-    let mut control = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let limits = bound.read(1);
+    let mut control = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -165,4 +173,5 @@ fn run(bound: Bound<'_>) {
         m.most = [0u32; 256];
         main(&mut m, group as u32);
     }
+}
 }

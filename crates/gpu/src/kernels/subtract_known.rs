@@ -1,6 +1,8 @@
 // Written from `shader/subtract_known.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "subtract_known",
@@ -10,7 +12,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -20,6 +23,11 @@ pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub struct Params {
     pub count: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -54,10 +62,10 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let nodes = bound.read::<u32>(0);
-    let forces = bound.read::<u32>(1);
-    let mut gradient = bound.write::<u32>(2);
+pub fn run(bound: Bound<'_>) {
+    let nodes = bound.read(0);
+    let forces = bound.read(1);
+    let mut gradient = bound.write(2);
     let mut m = Memory {
         params: bound.params(),
         nodes: &nodes,
@@ -69,4 +77,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

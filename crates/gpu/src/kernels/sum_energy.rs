@@ -1,6 +1,8 @@
 // Written from `shader/sum_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "sum_energy",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -26,6 +29,11 @@ pub struct EnergyParams {
     pub rate: f32,
     pub quantum: f32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: EnergyParams,
@@ -85,9 +93,9 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     put_part(m, std::array::from_fn::<_, 64, _>(|t| ([group, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| ([t as u32, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| _e19[t]));
 }
 
-fn run(bound: Bound<'_>) {
-    let addends = bound.read::<u32>(0);
-    let mut parts = bound.write::<u32>(1);
+pub fn run(bound: Bound<'_>) {
+    let addends = bound.read(0);
+    let mut parts = bound.write(1);
     let mut m = Memory {
         params: bound.params(),
         addends: &addends,
@@ -98,4 +106,5 @@ fn run(bound: Bound<'_>) {
         m.shared_parts = [[0.0f32; 4]; 64];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/summarize.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "summarize",
@@ -12,7 +14,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -23,6 +26,11 @@ pub const THREADS: u32 = 256u32;
 pub struct Params {
     pub count: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -185,9 +193,9 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let sums = bound.read::<u32>(0);
-    let mut summary = bound.write::<u32>(1);
+pub fn run(bound: Bound<'_>) {
+    let sums = bound.read(0);
+    let mut summary = bound.write(1);
     let mut m = Memory {
         params: bound.params(),
         sums: &sums,
@@ -200,4 +208,5 @@ fn run(bound: Bound<'_>) {
         m.shared_largest = [0.0f32; 256];
         main(&mut m, group as u32);
     }
+}
 }

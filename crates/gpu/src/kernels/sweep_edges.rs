@@ -1,6 +1,8 @@
 // Written from `shader/sweep_edges.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "sweep_edges",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -32,6 +35,20 @@ pub const FIXED: u32 = 65535u32;
 pub const THREADS: u32 = 256u32;
 pub const KEPT: u32 = 4u32;
 pub const NO_COLOR: u32 = 4294967295u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub first: u32,
+    pub end: u32,
+    pub only_apply: u32,
+    pub sweeps: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct EdgeCluster {
@@ -117,15 +134,6 @@ impl Stored for EdgeLimit {
         self.multiplier.store(words, at + 4);
         self.longest.store(words, at + 7);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub first: u32,
-    pub end: u32,
-    pub only_apply: u32,
-    pub sweeps: u32,
 }
 
 #[derive(Clone, Copy)]
@@ -660,13 +668,13 @@ pub fn main(m: &mut Memory<'_>, p: &mut [Private; 256], group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let positions = bound.read::<u32>(0);
-    let clusters = bound.read::<u32>(1);
-    let cluster_vertices = bound.read::<u32>(2);
-    let color_ends = bound.read::<u32>(3);
-    let mut limits = bound.write::<u32>(4);
-    let mut displacements = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let positions = bound.read(0);
+    let clusters = bound.read(1);
+    let cluster_vertices = bound.read(2);
+    let color_ends = bound.read(3);
+    let mut limits = bound.write(4);
+    let mut displacements = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         positions: &positions,
@@ -686,4 +694,5 @@ fn run(bound: Bound<'_>) {
         let mut p = [Private { outside: [[0.0f32; 4]; 2], }; 256];
         main(&mut m, &mut p, group as u32);
     }
+}
 }

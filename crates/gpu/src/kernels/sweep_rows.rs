@@ -1,6 +1,8 @@
 // Written from `shader/sweep_rows.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "sweep_rows",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -32,6 +35,20 @@ pub const FIXED: u32 = 65535u32;
 pub const THREADS: u32 = 256u32;
 pub const SLOTS: u32 = 512u32;
 pub const EMPTY: u32 = 4294967295u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub first: u32,
+    pub end: u32,
+    pub only_apply: u32,
+    pub sweeps: u32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Row {
@@ -137,15 +154,6 @@ impl Stored for Bucket {
         self.colors.store(words, at + 2);
         self.most.store(words, at + 3);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub first: u32,
-    pub end: u32,
-    pub only_apply: u32,
-    pub sweeps: u32,
 }
 
 struct Memory<'a> {
@@ -979,13 +987,13 @@ pub fn main(m: &mut Memory<'_>, p: &mut [Private; 256], group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let order = bound.read::<u32>(0);
-    let buckets = bound.read::<u32>(1);
-    let color_ends = bound.read::<u32>(2);
-    let mut rows = bound.write::<u32>(3);
-    let mut displacements = bound.write::<u32>(4);
-    let mut pushes = bound.write::<u32>(5);
+pub fn run(bound: Bound<'_>) {
+    let order = bound.read(0);
+    let buckets = bound.read(1);
+    let color_ends = bound.read(2);
+    let mut rows = bound.write(3);
+    let mut displacements = bound.write(4);
+    let mut pushes = bound.write(5);
     let mut m = Memory {
         params: bound.params(),
         order: &order,
@@ -1015,4 +1023,5 @@ fn run(bound: Bound<'_>) {
         let mut p = [Private { row: Row::ZERO, is_kept: false, }; 256];
         main(&mut m, &mut p, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/tetrahedron_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "tetrahedron_energy",
@@ -15,7 +17,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -23,6 +26,21 @@ pub const NONE: u32 = 4294967295u32;
 pub const TINY: f32 = 1e-18f32;
 pub const MIN_RATIO: f32 = 0.05f32;
 pub const THREADS: u32 = 64u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct EnergyParams {
+    pub count: u32,
+    pub first: u32,
+    pub workgroups: u32,
+    pub rate: f32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Tetrahedron {
@@ -79,16 +97,6 @@ impl Stored for Tetrahedron {
         self.viscous_mu.store(words, at + 18);
         self.padding.store(words, at + 19);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct EnergyParams {
-    pub count: u32,
-    pub first: u32,
-    pub workgroups: u32,
-    pub rate: f32,
-    pub quantum: f32,
 }
 
 struct Memory<'a> {
@@ -395,12 +403,12 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     put_part(m, std::array::from_fn::<_, 64, _>(|t| ([group, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| ([t as u32, 0, 0])[0]), std::array::from_fn::<_, 64, _>(|t| _e32[t]));
 }
 
-fn run(bound: Bound<'_>) {
-    let tetrahedra = bound.read::<u32>(0);
-    let reference = bound.read::<u32>(1);
-    let trial = bound.read::<u32>(2);
-    let start = bound.read::<u32>(3);
-    let mut parts = bound.write::<u32>(4);
+pub fn run(bound: Bound<'_>) {
+    let tetrahedra = bound.read(0);
+    let reference = bound.read(1);
+    let trial = bound.read(2);
+    let start = bound.read(3);
+    let mut parts = bound.write(4);
     let mut m = Memory {
         params: bound.params(),
         tetrahedra: &tetrahedra,
@@ -414,4 +422,5 @@ fn run(bound: Bound<'_>) {
         m.shared_parts = [[0.0f32; 4]; 64];
         main(&mut m, group as u32);
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/tetrahedron_gradient.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "tetrahedron_gradient",
@@ -13,13 +15,28 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub const NONE: u32 = 4294967295u32;
 pub const TINY: f32 = 1e-18f32;
 pub const MIN_RATIO: f32 = 0.05f32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct GradientParams {
+    pub elements: u32,
+    pub first: u32,
+    pub rate: f32,
+    pub quantum: f32,
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Tetrahedron {
@@ -76,15 +93,6 @@ impl Stored for Tetrahedron {
         self.viscous_mu.store(words, at + 18);
         self.padding.store(words, at + 19);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct GradientParams {
-    pub elements: u32,
-    pub first: u32,
-    pub rate: f32,
-    pub quantum: f32,
 }
 
 struct Memory<'a> {
@@ -300,11 +308,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let tetrahedra = bound.read::<u32>(0);
-    let positions = bound.read::<u32>(1);
-    let start = bound.read::<u32>(2);
-    let mut gradients = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let tetrahedra = bound.read(0);
+    let positions = bound.read(1);
+    let start = bound.read(2);
+    let mut gradients = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         tetrahedra: &tetrahedra,
@@ -317,4 +325,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/total.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "total",
@@ -13,7 +15,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 256,
     bindings: &[Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -41,6 +44,11 @@ pub struct Params {
     pub capacity: u32,
     pub list: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -203,9 +211,9 @@ pub fn main(m: &mut Memory<'_>, group: u32) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let mut blocks = bound.write::<u32>(0);
-    let mut control = bound.write::<u32>(1);
+pub fn run(bound: Bound<'_>) {
+    let mut blocks = bound.write(0);
+    let mut control = bound.write(1);
     let mut m = Memory {
         params: bound.params(),
         blocks: &mut blocks,
@@ -218,4 +226,5 @@ fn run(bound: Bound<'_>) {
         m.shared_blocks = 0u32;
         main(&mut m, group as u32);
     }
+}
 }

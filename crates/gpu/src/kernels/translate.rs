@@ -1,6 +1,8 @@
 // Written from `shader/translate.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "translate",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -21,6 +24,11 @@ pub const MOST_WORKGROUPS: u32 = 65535u32;
 pub struct Params {
     pub nodes: u32,
 }
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 struct Memory<'a> {
     params: Params,
@@ -66,11 +74,11 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let blocks = bound.read::<u32>(0);
-    let translations = bound.read::<u32>(1);
-    let free = bound.read::<u32>(2);
-    let mut step = bound.write::<u32>(3);
+pub fn run(bound: Bound<'_>) {
+    let blocks = bound.read(0);
+    let translations = bound.read(1);
+    let free = bound.read(2);
+    let mut step = bound.write(3);
     let mut m = Memory {
         params: bound.params(),
         blocks: &blocks,
@@ -83,4 +91,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

@@ -1,6 +1,8 @@
 // Written from `shader/traverse.wgsl` by `cargo xtask twins`: change that file, not this one.
 
-use crate::wgsl::*;
+use crate::stages::Access::{Read, Write};
+use crate::stages::Stage;
+use bytemuck::{Pod, Zeroable};
 
 pub static STAGE: Stage = Stage {
     name: "traverse",
@@ -11,7 +13,8 @@ pub static STAGE: Stage = Stage {
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
-    twin: run,
+    #[cfg(feature = "twins")]
+    twin: twin::run,
 };
 
 pub const MOST_WORKGROUPS: u32 = 65535u32;
@@ -31,6 +34,25 @@ pub const COLORS: u32 = 128u32;
 pub const FIXED: u32 = 65535u32;
 pub const LEVEL_SHIFT: u32 = 27u32;
 pub const GROUP_MASK: u32 = 134217727u32;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Params {
+    pub queries: u32,
+    pub count: u32,
+    pub kind: u32,
+    pub symmetric: u32,
+    pub first_row: u32,
+    pub lists: u32,
+    pub capacity: u32,
+    pub levels: u32,
+    pub level_first: [[u32; 4]; 3],
+}
+
+#[cfg(feature = "twins")]
+pub mod twin {
+use super::*;
+use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
 pub struct Vertex {
@@ -231,20 +253,6 @@ impl Stored for Candidate {
         self.kind_and_a.store(words, at + 0);
         self.b.store(words, at + 1);
     }
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct Params {
-    pub queries: u32,
-    pub count: u32,
-    pub kind: u32,
-    pub symmetric: u32,
-    pub first_row: u32,
-    pub lists: u32,
-    pub capacity: u32,
-    pub levels: u32,
-    pub level_first: [[u32; 4]; 3],
 }
 
 struct Memory<'a> {
@@ -549,15 +557,15 @@ pub fn main(m: &mut Memory<'_>, group: u32, t: usize) {
     }
 }
 
-fn run(bound: Bound<'_>) {
-    let queries = bound.read::<u32>(0);
-    let slots = bound.read::<u32>(1);
-    let boxes = bound.read::<u32>(2);
-    let balls = bound.read::<u32>(3);
-    let vertices = bound.read::<u32>(4);
-    let mut starts = bound.write::<u32>(5);
-    let mut candidates = bound.write::<u32>(6);
-    let mut control = bound.write::<u32>(7);
+pub fn run(bound: Bound<'_>) {
+    let queries = bound.read(0);
+    let slots = bound.read(1);
+    let boxes = bound.read(2);
+    let balls = bound.read(3);
+    let vertices = bound.read(4);
+    let mut starts = bound.write(5);
+    let mut candidates = bound.write(6);
+    let mut control = bound.write(7);
     let mut m = Memory {
         params: bound.params(),
         queries: &queries,
@@ -574,4 +582,5 @@ fn run(bound: Bound<'_>) {
             main(&mut m, group as u32, t);
         }
     }
+}
 }

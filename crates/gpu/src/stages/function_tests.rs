@@ -9,13 +9,13 @@ fn the_logarithm_has_a_small_relative_error_everywhere() {
         let size = (f64::from(k) / 1e5 - 12.0).exp();
         [size, -size].map(|x| x as f32).into_iter().filter(|x| *x > -0.999).fold(0.0, |worst: f64, x| {
             let expected = f64::from(x).ln_1p();
-            worst.max((f64::from(tetrahedron_energy::log_1p(x)) / expected - 1.0).abs())
+            worst.max((f64::from(tetrahedron_energy::twin::log_1p(x)) / expected - 1.0).abs())
         })
     });
     let worst = worst.fold(0.0, f64::max);
     // 1 + x is rounded below the root of 1/2, where the logarithm has a size of at least 0.34.
     assert!(worst < 6e-7, "{worst:e}");
-    assert!(tetrahedron_energy::log_1p(0.0) == 0.0 && tetrahedron_energy::log_1p(1e-20) == 1e-20);
+    assert!(tetrahedron_energy::twin::log_1p(0.0) == 0.0 && tetrahedron_energy::twin::log_1p(1e-20) == 1e-20);
 }
 
 #[test]
@@ -29,9 +29,9 @@ fn eigenvalues_are_filtered_as_in_double_precision() {
             // What is definite stays as it is, and near that rounding decides.
             continue;
         }
-        eigen.eigenvalues.apply(|value| *value = f64::from(frame::filtered(*value as f32)));
+        eigen.eigenvalues.apply(|value| *value = f64::from(frame::twin::filtered(*value as f32)));
         let expected = eigen.recompose();
-        let found = frame::filtered_matrix(std::array::from_fn(|k| matrix[(k / 3, k % 3)] as f32));
+        let found = frame::twin::filtered_matrix(std::array::from_fn(|k| matrix[(k / 3, k % 3)] as f32));
         for (k, found) in found.into_iter().enumerate() {
             let error = (f64::from(found) - expected[(k / 3, k % 3)]).abs();
             assert!(error < 4e-6 * matrix.abs().max().max(1.0), "{case}: {error:e}");
