@@ -58,7 +58,8 @@ impl Kernel {
         self.structs(&mut out, &params, &params, true);
         let _ = writeln!(
             out,
-            "#[cfg(feature = \"twins\")]\npub mod twin {{\nuse super::*;\nuse crate::wgsl::*;\n"
+            "#[cfg(feature = \"twins\")]\npub mod twin {{\nuse crate::kernels::{}::*;\nuse crate::wgsl::*;\n",
+            self.name
         );
         self.structs(&mut out, &params, &functions, false);
         let _ = writeln!(out, "struct Memory<'a> {{\n    params: {params},");

@@ -162,7 +162,8 @@ fn restore(simulator: &mut Simulator, start: &Checkpoint) -> Result<(), Simulati
     restored.map_err(|message| SimulationError::Internal { step: start.step, message })
 }
 
-#[cfg(all(test, feature = "twins"))]
+#[cfg(test)]
+#[cfg(feature = "twins")]
 mod tests {
     use super::*;
     use crate::simulator::BackendError;

@@ -50,7 +50,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::advance::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

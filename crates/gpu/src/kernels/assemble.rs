@@ -28,7 +28,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::assemble::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

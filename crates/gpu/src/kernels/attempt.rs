@@ -35,7 +35,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::attempt::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

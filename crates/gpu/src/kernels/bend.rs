@@ -36,7 +36,7 @@ pub struct ElementParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::bend::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -47,7 +47,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::build::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -30,7 +30,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::coarsen::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

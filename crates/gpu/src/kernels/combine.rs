@@ -33,7 +33,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::combine::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

@@ -26,7 +26,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::copy::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

@@ -37,7 +37,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::couple::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

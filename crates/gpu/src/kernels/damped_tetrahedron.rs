@@ -43,7 +43,7 @@ pub struct ElementParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::damped_tetrahedron::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -39,7 +39,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::domain::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

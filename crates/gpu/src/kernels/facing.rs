@@ -57,7 +57,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::facing::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

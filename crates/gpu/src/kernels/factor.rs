@@ -44,7 +44,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::factor::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

@@ -28,7 +28,7 @@ pub struct NodeParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::gather_gradient::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -31,7 +31,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::invert::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

@@ -40,7 +40,7 @@ pub struct ElementParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::membrane::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

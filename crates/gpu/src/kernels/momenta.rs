@@ -30,7 +30,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::momenta::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

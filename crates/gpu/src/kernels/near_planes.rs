@@ -46,7 +46,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::near_planes::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

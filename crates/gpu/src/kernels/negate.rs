@@ -37,7 +37,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::negate::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

@@ -33,7 +33,7 @@ pub struct EnergyParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::node_energy::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -42,7 +42,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::plan::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -33,7 +33,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::press::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

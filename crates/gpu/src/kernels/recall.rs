@@ -42,7 +42,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::recall::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

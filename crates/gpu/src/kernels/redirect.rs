@@ -40,7 +40,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::redirect::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -27,7 +27,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::regrid::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

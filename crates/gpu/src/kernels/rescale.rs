@@ -43,7 +43,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::rescale::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

@@ -41,7 +41,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::residuals::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

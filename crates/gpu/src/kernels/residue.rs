@@ -28,7 +28,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::residue::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

@@ -48,7 +48,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::separate::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

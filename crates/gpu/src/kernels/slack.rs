@@ -45,7 +45,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::slack::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -54,7 +54,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::space::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

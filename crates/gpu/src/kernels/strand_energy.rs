@@ -38,7 +38,7 @@ pub struct EnergyParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::strand_energy::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

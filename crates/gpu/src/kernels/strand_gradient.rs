@@ -35,7 +35,7 @@ pub struct GradientParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::strand_gradient::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -30,7 +30,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::strand_product::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -32,7 +32,7 @@ pub struct EnergyParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::sum_energy::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

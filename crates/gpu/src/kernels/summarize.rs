@@ -29,7 +29,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::summarize::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

@@ -43,7 +43,7 @@ pub struct ElementParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::tetrahedron::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

@@ -39,7 +39,7 @@ pub struct EnergyParams {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::tetrahedron_energy::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]

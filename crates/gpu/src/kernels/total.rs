@@ -47,7 +47,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::total::*;
 use crate::wgsl::*;
 
 struct Memory<'a> {

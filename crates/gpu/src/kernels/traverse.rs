@@ -51,7 +51,7 @@ pub struct Params {
 
 #[cfg(feature = "twins")]
 pub mod twin {
-use super::*;
+use crate::kernels::traverse::*;
 use crate::wgsl::*;
 
 #[derive(Clone, Copy)]
