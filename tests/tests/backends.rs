@@ -237,30 +237,6 @@ fn nothing_intersects_in_any_scene_of_the_paper() {
     }
 }
 
-/// The table of `docs/gpu/results.md` of how low sand lies after it has poured, which depends on how well its
-/// rows are solved: mean and standard deviation of runs with slightly different gravity.
-#[test]
-#[ignore = "it takes minutes"]
-fn sand_by_number_of_sweeps() {
-    const RUNS: usize = 12;
-    println!("| sweeps | CPU | twins |");
-    for sweeps in [8, 16, 64] {
-        let cells = [On::Cpu, On::Twins].map(|on| {
-            let heights = (0..RUNS).map(|run| {
-                let (y, x) = (2.4 * run as f64).sin_cos();
-                let gravity = format!("simulation.gravity=[{},{},-9.81]", 0.03 * x, 0.03 * y);
-                let sweeps = format!("solver.backward.sweeps={sweeps}");
-                1e3 * course(("sand", 0.08, &[&gravity, &sweeps], 80), on).centers[79].z
-            });
-            let heights: Vec<f64> = heights.collect();
-            let mean = heights.iter().sum::<f64>() / RUNS as f64;
-            let variance = heights.iter().map(|h| (h - mean).powi(2)).sum::<f64>() / (RUNS - 1) as f64;
-            format!("{mean:.1} ± {:.1}", variance.sqrt())
-        });
-        println!("| {sweeps} | {} |", cells.join(" | "));
-    }
-}
-
 /// Two patches of cloth that fly together, far out of where they began, and meet there.
 const FLIGHT: &str = r#"
 [simulation]

@@ -14,7 +14,6 @@ use bowknot::geometry::{Point, Vector};
 use bowknot::gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
 use bowknot::run::{self, Backends, Progress, RunOptions};
 use bowknot::{Scene, SimulationError, Simulator};
-use bowknot_gpu::{BufferId, GpuError, Recording};
 use std::fmt::Debug;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
@@ -36,16 +35,6 @@ const OTHERS: [&str; 4] = [
     "solver.newton.preconditioner=\"block-jacobi\"",
 ];
 
-const LARGE: [Case; 7] = [
-    ("drape", 0.7, &[], 25),
-    ("stack", 0.35, &[], 40),
-    ("dress", 0.15, &[], 12),
-    ("gown", 0.15, &[], 12),
-    ("trampoline", 0.5, &[], 30),
-    ("hair", 0.1, &[], 12),
-    ("mat", 0.1, &[], 40),
-];
-
 /// What the solves of a run were.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counts {
@@ -55,63 +44,18 @@ struct Counts {
     differences: usize,
     /// Newton iterations: matrices that linear systems were solved for.
     solved: usize,
-    words_written: usize,
-    words_read: usize,
 }
 
 /// An engine that says how many words of it differ from those of the twins.
-trait Metering: Engine + Debug + Send {
+trait Comparing: Engine + Debug + Send {
     fn differences(&self) -> usize {
         0
     }
-
-    /// Words that were written to it and read from it.
-    fn words_moved(&self) -> (usize, usize) {
-        (0, 0)
-    }
 }
 
-impl Metering for TwinEngine {}
+impl Comparing for TwinEngine {}
 
-/// The twins, and how much the host writes and reads.
-#[derive(Debug, Default)]
-struct Metered {
-    twins: TwinEngine,
-    written: usize,
-    read: usize,
-}
-
-impl Engine for Metered {
-    fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
-        self.twins.buffer(label, words)
-    }
-
-    fn free(&mut self, buffer: BufferId) {
-        self.twins.free(buffer);
-    }
-
-    fn clear(&mut self) {
-        self.twins.clear();
-    }
-
-    fn words(&self, buffer: BufferId) -> usize {
-        self.twins.words(buffer)
-    }
-
-    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
-        self.written += recording.words_written();
-        self.read += read.iter().map(|(_, words)| words).sum::<usize>();
-        self.twins.run(recording, read)
-    }
-}
-
-impl Metering for Metered {
-    fn words_moved(&self) -> (usize, usize) {
-        (self.written, self.read)
-    }
-}
-
-impl Metering for ComparingEngine {
+impl Comparing for ComparingEngine {
     fn differences(&self) -> usize {
         self.differences().len()
     }
@@ -125,7 +69,7 @@ struct Counted<E> {
     fails_at: Option<usize>,
 }
 
-impl<E: Metering> Counted<E> {
+impl<E: Comparing> Counted<E> {
     fn new(engine: E, fails_at: Option<usize>) -> (Box<Self>, Arc<Mutex<Counts>>) {
         let counts: Arc<Mutex<Counts>> = Arc::default();
         let inner = ConjugateGradients::new("twins".to_owned(), engine);
@@ -140,16 +84,15 @@ impl<E: Metering> Counted<E> {
     }
 }
 
-impl<E: Metering> Counted<E> {
-    /// Notes what the engine has moved so far.
-    fn note_words(&self) {
+impl<E: Comparing> Counted<E> {
+    /// Notes how many words differ so far.
+    fn note_differences(&self) {
         let mut counts = self.counts.lock().expect("no panic");
         counts.differences = self.inner.engine().differences();
-        (counts.words_written, counts.words_read) = self.inner.engine().words_moved();
     }
 }
 
-impl<E: Metering> NewtonBackend for Counted<E> {
+impl<E: Comparing> NewtonBackend for Counted<E> {
     fn name(&self) -> String {
         self.inner.name()
     }
@@ -218,7 +161,7 @@ impl<E: Metering> NewtonBackend for Counted<E> {
 
     fn target(&mut self, y: &mut [Vector]) -> Result<(), NewtonBackendError> {
         self.inner.target(y)?;
-        self.note_words();
+        self.note_differences();
         Ok(())
     }
 
@@ -239,7 +182,6 @@ struct Course {
     edge: f64,
     centers: Vec<Point>,
     newton_iterations: usize,
-    cg_iterations: usize,
     converged: usize,
     /// First time step with contact rows.
     first_contact: usize,
@@ -255,7 +197,7 @@ fn simulator((name, scale, sets, _): Case, more: &[&str]) -> Simulator {
 
 fn course(case: Case, more: &[&str], on_twins: bool) -> Course {
     let mut simulator = simulator(case, more);
-    let (backend, counts) = Counted::new(Metered::default(), None);
+    let (backend, counts) = Counted::new(TwinEngine::new(), None);
     if on_twins {
         simulator.set_dynamics_backend(Some(backend)).expect("linear elements");
     }
@@ -265,7 +207,6 @@ fn course(case: Case, more: &[&str], on_twins: bool) -> Course {
         edge: simulator.resolver().scene().lengths().edge,
         centers: steps.iter().map(|s| Point::from(s.center_of_mass)).collect(),
         newton_iterations: steps.iter().map(|s| s.newton_iterations).sum(),
-        cg_iterations: steps.iter().map(|s| s.cg_iterations).sum(),
         converged: steps.iter().filter(|s| s.converged).count(),
         first_contact: steps.iter().position(|s| s.contact_rows + s.pressing_contacts > 0).unwrap_or(case.3),
         counts,
@@ -434,34 +375,6 @@ fn solves_stay_on_the_device_while_bodies_sleep_and_after() {
     simulator.set_external_forces(&force).expect("finite");
     assert!((0..5).any(|_| !step(&mut simulator)), "the block does not wake");
     step(&mut simulator);
-}
-
-/// The table of `docs/gpu/dynamics.md` on whole runs.
-#[test]
-#[ignore = "it takes minutes"]
-fn newton_in_scenes() {
-    println!("Targets and linear iterations: CPU, device. Bytes per node and Newton iteration.");
-    println!("| scene | nodes | preconditioner | targets | Newton | linear | written | read | mm |");
-    for case in LARGE {
-        for kind in ["two-level", "block-jacobi"] {
-            let set = format!("solver.newton.preconditioner=\"{kind}\"");
-            let [cpu, device] = [false, true].map(|on_twins| course(case, &[&set], on_twins));
-            let nodes = simulator(case, &[]).world().deformable_vertices;
-            let per_node = |words: usize| 4 * words / (nodes * device.counts.solved.max(1));
-            println!(
-                "| {} | {nodes} | {kind} | {}, {} | {} | {}, {} | {} | {} | {:.3} |",
-                case.0,
-                cpu.newton_iterations,
-                device.newton_iterations,
-                device.counts.solved,
-                cpu.cg_iterations,
-                device.cg_iterations,
-                per_node(device.counts.words_written),
-                per_node(device.counts.words_read),
-                1e3 * apart(&cpu, &device, case.3),
-            );
-        }
-    }
 }
 
 #[test]

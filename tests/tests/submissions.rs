@@ -10,8 +10,6 @@ use bowknot_geometry::Point;
 struct Course {
     counts: DeviceWork,
     two_way_steps: usize,
-    /// Calls of the backend.
-    calls: usize,
     end: Vec<Point>,
 }
 
@@ -29,14 +27,13 @@ fn on_twins(scene: &Scene, most: usize, with_dynamics: bool) -> Simulator {
 
 fn course(scene: &Scene, time_steps: usize, most: usize, with_dynamics: bool) -> Course {
     let mut simulator = on_twins(scene, most, with_dynamics);
-    let (mut two_way_steps, mut calls, mut counts) = (0, 0, DeviceWork::default());
+    let (mut two_way_steps, mut counts) = (0, DeviceWork::default());
     for _ in 0..time_steps {
         let statistics = simulator.step().expect("a step");
         two_way_steps += statistics.two_way_steps;
-        calls += statistics.newton_iterations;
         counts = counts + statistics.device.unwrap_or_default();
     }
-    Course { counts, two_way_steps, calls, end: simulator.positions().to_vec() }
+    Course { counts, two_way_steps, end: simulator.positions().to_vec() }
 }
 
 /// What a device is asked for in the first time steps of five scenes: submissions, dispatches, waits and buffers.
@@ -104,32 +101,5 @@ fn steps_that_are_submitted_together_have_the_same_bits_and_fewer_waits() {
         assert!(one.counts.submissions >= one.two_way_steps, "{name}");
         assert!(eight.counts.submissions < one.counts.submissions, "{name}");
         assert!(eight.counts.waits < one.counts.waits, "{name}");
-    }
-}
-
-/// The table of `docs/gpu/collisions.md`.
-#[test]
-#[ignore = "it takes minutes"]
-fn submissions_and_waits_by_scene() {
-    println!(
-        "| scene | calls | two-way steps | most | submissions per call | waits per call | dispatches per \
-         step |"
-    );
-    for (name, scale, time_steps) in
-        [("drape", 0.5, 60), ("needle", 0.2, 40), ("stack", 0.2, 80), ("dress", 0.1, 40), ("sand", 0.08, 80)]
-    {
-        let scene = Scene::builtin(name, scale).expect("a scene");
-        for most in [1, 2, 4, 8] {
-            let course = course(&scene, time_steps, most, false);
-            let per_call = |count: usize| count as f64 / course.calls as f64;
-            println!(
-                "| {name} | {} | {} | {most} | {:.2} | {:.2} | {:.0} |",
-                course.calls,
-                course.two_way_steps,
-                per_call(course.counts.submissions),
-                per_call(course.counts.waits),
-                course.counts.dispatches as f64 / course.two_way_steps as f64,
-            );
-        }
     }
 }
