@@ -1,15 +1,15 @@
 //! Limits of edges between prescribed vertices that are held farther apart than the limits allow.
 //!
 //! Prescribed vertices go where they are told, so the edges between them yield: each gets the length that it
-//! has where edges exceed their limits least (`least_excess.rs`). That follows from the places of the
-//! prescribed vertices alone. All limits can then be met at once, since there is a place for every vertex at
-//! which they are, and edges that need not be longer keep theirs. Where nothing asks for it any more, an edge
-//! goes back to its limit as fast as the forces shorten it: a limit that were below its length at once would
-//! be a wall in its way.
+//! has where edges exceed their limits least (`least_excess.rs`). That length follows from the places of the
+//! prescribed vertices alone; those of the others are where the search for it begins. All limits can then be
+//! met at once, since there is a place for every vertex at which they are, and edges that need not be longer
+//! keep theirs. Where nothing asks for it any more, an edge goes back to its limit as fast as the forces
+//! shorten it: a limit that were below its length at once would be a wall in its way.
 //!
-//! By Kirszbraun's theorem a map from the prescribed vertices at rest to their places that lengthens no
-//! distance by more than a factor goes on to all vertices with that factor. So nothing has to be looked for
-//! while no two of them are farther apart than their distance at rest times the stretch limit.
+//! Where all vertices meet the limits as they are, there is nothing to look for. By Kirszbraun's theorem a map from the prescribed vertices at rest to their places that lengthens no
+//! distance by more than a factor goes on to all vertices with that factor. So there is not either while no two
+//! of them are farther apart than their distance at rest times the stretch limit.
 
 use super::held_apart::{HeldPair, OverLimit};
 use super::least_excess::LimitedGraph;
@@ -53,11 +53,14 @@ struct Patch {
     /// Edges between places in `vertices`, with their limits [m], and their indices among the limited edges.
     edges: Vec<([u32; 2], f64)>,
     indices: Vec<u32>,
+    /// With limits above which edges count as too long.
     graph: LimitedGraph,
     /// Smallest ratio of a limit to the rest length.
     stretch: f64,
     /// Places of the prescribed ones when this was last looked at [m].
     places: Vec<Point>,
+    /// Whether all limits can be met with these places, wherever the others are.
+    is_loose: bool,
     /// The limits of the edges then [m].
     limits: Vec<f64>,
 }
@@ -99,6 +102,8 @@ impl HeldEdges {
         }
         let went_back = !self.going_back.is_empty();
         self.going_back = going_back(limited, x, before);
+        // The state alone decides, so that a resumed run has the same bits.
+        self.patches.iter_mut().filter(|patch| !patch.is_loose).for_each(|patch| patch.places.clear());
         let moved = self.go_on(rest, x);
         others || moved || went_back || !self.going_back.is_empty()
     }
@@ -175,10 +180,11 @@ impl Patch {
             ([places[&a], places[&b]], limit)
         };
         let edges: Vec<([u32; 2], f64)> = indices.iter().map(edge).collect();
-        let graph = LimitedGraph::new(&edges, free);
+        let beyond = |&(vertices, limit): &([u32; 2], f64)| (vertices, (1.0 + SLACK) * limit);
+        let graph = LimitedGraph::new(&edges.iter().map(beyond).collect::<Vec<_>>(), free);
         let limits: Vec<f64> = edges.iter().map(|(_, limit)| *limit).collect();
         let places = Vec::new();
-        Some(Self { vertices, free, edges, indices, graph, stretch, places, limits })
+        Some(Self { vertices, free, edges, indices, graph, stretch, places, is_loose: false, limits })
     }
 
     /// The edges that yield, by index among all, with their limits [m].
@@ -197,31 +203,46 @@ impl Patch {
         Some(OverLimit { edge, excess: excess(most), pair: self.pair_over(most) })
     }
 
-    /// Finds the limits at which the prescribed vertices can be at `places` [m]; returns whether they may be
-    /// others than before.
-    fn update(&mut self, rest: &[Point], places: &[Point]) -> bool {
+    /// Finds the limits at which the prescribed vertices can be where they are in `x` [m]; returns whether they
+    /// are others than before.
+    fn update(&mut self, rest: &[Point], x: &[Point]) -> bool {
         let of = |points: &[Point], v: &u32| points[*v as usize];
         let held = &self.vertices[self.free..];
-        if self.places.len() == held.len() && held.iter().zip(&self.places).all(|(v, x)| of(places, v) == *x)
+        if self.places.len() == held.len()
+            && held.iter().zip(&self.places).all(|(v, place)| of(x, v) == *place)
         {
             return false;
         }
-        self.places = held.iter().map(|v| of(places, v)).collect();
-        let of_scene = self.edges.iter().map(|(_, limit)| *limit);
-        let yielded = of_scene.clone().zip(&self.limits).any(|(of_scene, limit)| *limit > of_scene);
+        self.places = held.iter().map(|v| of(x, v)).collect();
         let rest: Vec<Point> = self.vertices.iter().map(|v| of(rest, v)).collect();
-        if self.can_be_met(&rest[self.free..]) {
-            self.limits.clear();
-            self.limits.extend(of_scene);
-            return yielded;
+        self.is_loose = self.can_be_met(&rest[self.free..]);
+        let mut limits: Vec<f64> = self.edges.iter().map(|(_, limit)| *limit).collect();
+        if !self.is_loose
+            && let Some(points) = self.least_excess(&rest, x)
+        {
+            for (limit, ([a, b], _)) in limits.iter_mut().zip(&self.edges) {
+                *limit = limit.max((points[*a as usize] - points[*b as usize]).norm() / (1.0 + SLACK));
+            }
         }
-        let mut points = self.guess(&rest);
+        let changed = limits != self.limits;
+        self.limits = limits;
+        changed
+    }
+
+    /// Places of all vertices where edges exceed their limits least [m]; none if they do not at `x`.
+    fn least_excess(&self, rest: &[Point], x: &[Point]) -> Option<Vec<Point>> {
+        let mut points: Vec<Point> = self.vertices.iter().map(|v| x[*v as usize]).collect();
+        let energy = self.graph.energy(&points);
+        if energy == 0.0 {
+            return None;
+        }
+        // Far from `x`, as after a jump, the guess may be the better start.
+        let guess = self.guess(rest);
+        if self.graph.energy(&guess) < energy {
+            points = guess;
+        }
         self.graph.settle(&mut points);
-        let limit = |&([a, b], limit): &([u32; 2], f64)| {
-            f64::max(limit, (points[a as usize] - points[b as usize]).norm() / (1.0 + SLACK))
-        };
-        self.limits = self.edges.iter().map(limit).collect();
-        true
+        Some(points)
     }
 
     /// Whether all limits can certainly be met: no two prescribed vertices are too far apart, in comparison
@@ -288,10 +309,11 @@ impl Patch {
             if way > ways[v as usize] || v as usize >= self.free {
                 continue;
             }
-            for &(next, limit) in self.graph.neighbors(v) {
-                if way + limit < ways[next as usize] {
-                    ways[next as usize] = way + limit;
-                    ahead.push(Reverse(((way + limit).to_bits(), next)));
+            for &(next, beyond) in self.graph.neighbors(v) {
+                let way = way + beyond / (1.0 + SLACK);
+                if way < ways[next as usize] {
+                    ways[next as usize] = way;
+                    ahead.push(Reverse((way.to_bits(), next)));
                 }
             }
         }
@@ -364,6 +386,28 @@ mod tests {
             }
         }
         assert!(over.is_some_and(|over| over.pair.is_some()));
+    }
+
+    /// A bent chain that is pulled straight: its ends are farther apart than at rest, and no limit is exceeded.
+    /// From a guess at its places that is found in thousands of steps only.
+    #[test]
+    fn where_the_state_meets_all_limits_none_yields() {
+        let n = 600;
+        let at = |k: u32| std::f64::consts::PI * f64::from(k) / f64::from(n);
+        let rest: Vec<Point> = (0..=n).map(|k| Point::new(at(k).cos(), at(k).sin(), 0.0)).collect();
+        let edge = |k: usize| DistanceLimit {
+            vertices: [k as u32, k as u32 + 1],
+            limit: 1.05 * (rest[k + 1] - rest[k]).norm(),
+        };
+        let limited: Vec<DistanceLimit> = (0..n as usize).map(edge).collect();
+        let prescribed: Vec<bool> = (0..=n).map(|k| k == 0 || k == n).collect();
+        for (stretch, is_over) in [(1.04, false), (1.049, false), (1.08, true)] {
+            let x: Vec<Point> = (0..=n).map(|k| Point::new(stretch * at(k), 0.0, 0.0)).collect();
+            let mut edges = HeldEdges::default();
+            edges.begin_step(&limited, [&rest, &x], &prescribed, &[]);
+            assert_eq!(edges.over(&x).is_some(), is_over, "{stretch}");
+            assert_eq!(edges.limits().count(), if is_over { n as usize } else { 0 }, "{stretch}");
+        }
     }
 
     #[test]

@@ -52,6 +52,23 @@ impl LimitedGraph {
         &self.neighbors[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
     }
 
+    /// The energy E at `points` [m]. Fixed parts, so that the sum does not depend on the threads.
+    pub fn energy(&self, points: &[Point]) -> f64 {
+        let free = self.starts.len() - 1;
+        let of_vertex = |v: usize| -> f64 {
+            let of_edge = |&(other, limit): &(u32, f64)| {
+                let excess = (points[other as usize] - points[v]).norm() - limit;
+                // An edge of two free vertices is met twice.
+                let share = if (other as usize) < free { 0.25 } else { 0.5 };
+                if excess > 0.0 { share * excess * excess / limit } else { 0.0 }
+            };
+            self.neighbors(v as u32).iter().map(of_edge).sum()
+        };
+        let parts = (0..free.div_ceil(CHUNK)).into_par_iter();
+        let parts = parts.map(|part| (CHUNK * part..free.min(CHUNK * (part + 1))).map(of_vertex).sum());
+        parts.collect::<Vec<f64>>().iter().sum()
+    }
+
     /// Moves the free ones of the `points` to a minimum [m].
     pub fn settle(&self, points: &mut [Point]) {
         let free = self.starts.len() - 1;
