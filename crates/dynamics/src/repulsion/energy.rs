@@ -36,6 +36,6 @@ impl Repulsion {
             }
             _ => state.rub(&slip, state.bound).energy,
         };
-        state.push(gap).energy + friction
+        state.push_energy(gap) + friction
     }
 }

@@ -9,9 +9,12 @@ pub(super) const MIN_BEND: f64 = 0.02;
 /// open more slowly. Larger: they open faster, and closing ones are damped less.
 const MIN_DRAG_SHARE: f64 = 0.05;
 
-/// Bisections in the search for the release. More: the force jumps by less there; 40 leave 10^-12 of the
-/// reach.
-const BISECTIONS: usize = 40;
+/// Step of Newton's method at which the search for the release ends, as a share of the room. Larger: the force
+/// jumps by more there.
+const RELEASE_TOLERANCE: f64 = 1e-12;
+
+/// Steps of that search at most. From the smallest share of the room it takes about 15.
+const MAX_RELEASE_STEPS: usize = 40;
 
 /// The normal force of a contact as a function of its gap g.
 ///
@@ -34,27 +37,30 @@ pub(super) struct NormalLaw {
     from: f64,
     /// Gap from which on nothing acts [m].
     release: f64,
+    /// Energy of force and drag there [J].
+    energy_at_release: f64,
     /// s below which the static force goes on linearly.
     bend: f64,
 }
 
-/// A normal force, its decrease with the gap, and its energy.
+/// A normal force and its decrease with the gap.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Push {
     /// [N].
     pub force: f64,
     /// Minus the derivative of the force by the gap [N/m].
     pub stiffness: f64,
-    /// Energy that has the force as its negative derivative [J].
-    pub energy: f64,
 }
 
-/// The static force at a share s of the room, with k = r = 1: force, its decrease with s, energy.
-fn shape(s: f64) -> [f64; 3] {
-    if s >= 1.0 {
-        return [0.0; 3];
-    }
-    [(1.0 - s) / (s * s), (2.0 - s) / (s * s * s), 1.0 / s - 1.0 + libm::log(s)]
+/// The static force at a share s of the room, with k = r = 1, and its decrease with s.
+#[inline]
+fn shape(s: f64) -> [f64; 2] {
+    if s >= 1.0 { [0.0; 2] } else { [(1.0 - s) / (s * s), (2.0 - s) / (s * s * s)] }
+}
+
+/// Its energy.
+fn shape_energy(s: f64) -> f64 {
+    if s >= 1.0 { 0.0 } else { 1.0 / s - 1.0 + libm::log(s) }
 }
 
 impl NormalLaw {
@@ -62,9 +68,8 @@ impl NormalLaw {
     /// gap at the start of the time step.
     pub fn new(stiffness: f64, reach: f64, floor: f64, start: f64) -> Self {
         let from = start.min(reach).max(floor + MIN_BEND * (reach - floor));
-        let mut law = Self { stiffness, reach, floor, from, release: reach, bend: MIN_BEND, drag: 0.0 };
-        law.find_release();
-        law
+        let (drag, energy_at_release) = (0.0, 0.0);
+        Self { stiffness, reach, floor, from, release: reach, energy_at_release, bend: MIN_BEND, drag }
     }
 
     /// Sets the drag to `ratio` times the static stiffness at the start of the time step, and less the nearer
@@ -85,16 +90,23 @@ impl NormalLaw {
         }
     }
 
+    /// The force falls with the gap, and ever slower, so Newton's method goes up from the gap at the start to
+    /// the release and never beyond.
     fn find_release(&mut self) {
         self.release = self.reach;
-        if self.from < self.reach {
-            let (mut low, mut high) = (self.from, self.reach);
-            for _ in 0..BISECTIONS {
-                let middle = 0.5 * (low + high);
-                if self.whole(middle).force > 0.0 { low = middle } else { high = middle }
+        if self.drag > 0.0 && self.from < self.reach {
+            let mut gap = self.from;
+            for _ in 0..MAX_RELEASE_STEPS {
+                let Push { force, stiffness } = self.whole(gap);
+                let step = force / stiffness;
+                gap = (gap + step.max(0.0)).min(self.reach);
+                if step <= RELEASE_TOLERANCE * (self.reach - self.floor) {
+                    break;
+                }
             }
-            self.release = high;
+            self.release = gap;
         }
+        self.energy_at_release = self.whole_energy(self.release);
     }
 
     /// s at a gap: 0 at the floor, 1 at the reach.
@@ -112,37 +124,36 @@ impl NormalLaw {
         self.at(self.from).force
     }
 
-    /// The static force.
-    fn resting(&self, gap: f64) -> Push {
+    /// Static force and drag, also where they would pull.
+    #[inline]
+    fn whole(&self, gap: f64) -> Push {
         let (room, s) = (self.reach - self.floor, self.share(gap));
         let at = s.max(self.bend);
-        let [force, slope, energy] = shape(at);
-        let below = at - s;
+        let [force, slope] = shape(at);
         Push {
-            force: self.stiffness * room * (force + slope * below),
-            stiffness: self.stiffness * slope,
-            energy: self.stiffness * room * room * (energy + force * below + 0.5 * slope * below * below),
+            force: self.stiffness * room * (force + slope * (at - s)) + self.drag * (self.from - gap),
+            stiffness: self.stiffness * slope + self.drag,
         }
     }
 
-    /// Static force and drag, also where they would pull.
-    fn whole(&self, gap: f64) -> Push {
-        let mut push = self.resting(gap);
-        let way = self.from - gap;
-        push.force += self.drag * way;
-        push.stiffness += self.drag;
-        push.energy += 0.5 * self.drag * way * way;
-        push
+    /// Energy of static force and drag [J].
+    fn whole_energy(&self, gap: f64) -> f64 {
+        let (room, s) = (self.reach - self.floor, self.share(gap));
+        let at = s.max(self.bend);
+        let ([force, slope], below, way) = (shape(at), at - s, self.from - gap);
+        let energy = shape_energy(at) + force * below + 0.5 * slope * below * below;
+        self.stiffness * room * room * energy + 0.5 * self.drag * way * way
     }
 
     /// The force at a gap.
+    #[inline]
     pub fn at(&self, gap: f64) -> Push {
-        if gap >= self.release {
-            return Push::default();
-        }
-        let mut push = self.whole(gap);
-        push.energy -= self.whole(self.release).energy;
-        push
+        if gap >= self.release { Push::default() } else { self.whole(gap) }
+    }
+
+    /// Energy that has the force as its negative derivative [J]; 0 where nothing acts.
+    pub fn energy(&self, gap: f64) -> f64 {
+        if gap >= self.release { 0.0 } else { self.whole_energy(gap) - self.energy_at_release }
     }
 
     /// Stiffness of the static force at a gap, of which the share of the room counts as `least` at least
@@ -154,9 +165,13 @@ impl NormalLaw {
     /// The force of a contact that is open now and expected to close: the slope of the law at its reach, as a
     /// spring that pulls as well. Thus one linear solve finds the force with which it closes.
     pub fn predicted(&self, gap: f64) -> Push {
-        let k = self.stiffness + self.drag;
-        let depth = self.reach - gap;
-        Push { force: k * depth, stiffness: k, energy: 0.5 * k * depth * depth }
+        let stiffness = self.stiffness + self.drag;
+        Push { force: stiffness * (self.reach - gap), stiffness }
+    }
+
+    /// The energy of that spring [J].
+    pub fn predicted_energy(&self, gap: f64) -> f64 {
+        0.5 * (self.stiffness + self.drag) * (self.reach - gap) * (self.reach - gap)
     }
 }
 

@@ -70,6 +70,11 @@ impl SpringState {
         if self.predicted { self.law.predicted(gap) } else { self.law.at(gap) }
     }
 
+    /// Energy that has the normal force as its negative derivative [J].
+    pub fn push_energy(&self, gap: f64) -> f64 {
+        if self.predicted { self.law.predicted_energy(gap) } else { self.law.energy(gap) }
+    }
+
     /// Friction linearized at a slip `at`; `across` projects on the tangent plane. Where it slides, friction
     /// is not stiff in its own direction; with `majorizes` it counts as stiff as across it.
     pub fn linear_rub(&self, at: Vector, across: &Matrix3<f64>, majorizes: bool) -> LinearRub {
