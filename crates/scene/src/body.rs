@@ -3,7 +3,7 @@
 use crate::elements::SolidElements;
 use crate::kind::BodyKind;
 use crate::material::Material;
-use crate::shapes::Shape;
+use crate::shapes::{MeshArrays, Shape};
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Vector;
 use bowknot_io::{Import, Up};
@@ -23,7 +23,7 @@ pub struct BodySpec {
     /// this or `shape`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,
-    /// Generated mesh, see the shapes. Either this or `mesh`.
+    /// Generated mesh, or one by its arrays, see the shapes. Either this or `mesh`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
     /// The elements of a solid: `linear` or `quadratic`. Linear tetrahedra are too stiff in bending where a
@@ -152,6 +152,13 @@ impl Parameters for BodySpec {
 }
 
 impl BodySpec {
+    /// A body of a mesh in memory, of the kind that its elements make, with the first material of that kind.
+    pub fn from_arrays(name: impl Into<String>, mesh: MeshArrays) -> Self {
+        let kind = mesh.kind();
+        let (shape, material) = (Some(Shape::Arrays(mesh)), Material::of(kind));
+        Self { name: name.into(), kind, shape, material, ..Self::default() }
+    }
+
     /// Why a shape is none for this body.
     fn unfit(&self, shape: &Shape) -> Option<String> {
         let (own, kind) = (shape.kind(), self.kind);

@@ -2,7 +2,7 @@
 
 use crate::body::{check_groups, check_placement};
 use crate::motion::Motion;
-use crate::shapes::Shape;
+use crate::shapes::{MeshArrays, Shape};
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Vector;
 use bowknot_io::Up;
@@ -19,7 +19,7 @@ pub struct ObstacleSpec {
     /// `shape`, or `sequence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,
-    /// Generated mesh or `half-space`, see the shapes. This, `mesh`, or `sequence`.
+    /// Generated mesh, one by its arrays, or `half-space`, see the shapes. This, `mesh`, or `sequence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
     /// An animation, relative to the scene file: a folder of meshes of equal elements, taken in the order of
@@ -116,6 +116,11 @@ impl Parameters for ObstacleSpec {
 }
 
 impl ObstacleSpec {
+    /// An obstacle of a mesh in memory.
+    pub fn from_arrays(name: impl Into<String>, mesh: MeshArrays) -> Self {
+        Self { name: name.into(), shape: Some(Shape::Arrays(mesh)), ..Self::default() }
+    }
+
     /// What the obstacle is made of: exactly one of `mesh`, `shape` and `sequence`.
     fn check_geometry(&self, checks: &mut Checks) {
         match (&self.mesh, &self.shape, &self.sequence) {

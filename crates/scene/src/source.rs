@@ -166,7 +166,9 @@ fn record_value(value: &Spanned<DeValue<'_>>, path: &str, text: &str, lines: &mu
     match value.get_ref() {
         DeValue::Table(table) => record_table(table, path, text, lines),
         DeValue::Array(list) => {
-            for (index, element) in list.iter().enumerate() {
+            // Of a mesh given by arrays there may be millions of numbers; their problems are the array's.
+            let tables = list.iter().enumerate().filter(|(_, element)| element.get_ref().is_table());
+            for (index, element) in tables {
                 let path = format!("{path}[{index}]");
                 lines.insert(path.clone(), line_column(text, element.span().start).0);
                 record_value(element, &path, text, lines);

@@ -133,7 +133,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
             "type = \"sheet\"",
             "type = \"shet\"",
             "scene.toml:16: body[0].shape.type: \"shet\" must be one of sheet, tube, ball, cone, box, \
-             figure, garment, wedge, lathe, ribbon, half-space, block, tet-ball, strands, woven, grains; did \
+             figure, garment, wedge, lathe, ribbon, half-space, block, tet-ball, strands, woven, grains, arrays; did \
              you mean sheet?",
         ),
         (

@@ -11,7 +11,7 @@ use bowknot::scene::{
 use bowknot::shapes::{
     Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Lathe, Ribbon, Sheet, Tube, Wedge,
 };
-use bowknot::shapes::{Block, Grains, Strands, TetBall, Woven};
+use bowknot::shapes::{Block, Grains, MeshArrays, Strands, TetBall, Woven};
 use bowknot::twoway::{BackwardParams, ContactParams, ForwardParams, Params, StopParams};
 use serde::Serialize;
 use std::fmt::Write;
@@ -45,6 +45,7 @@ const SOURCES: [&str; 36] = [
     "scene/src/shapes/strands.rs",
     "scene/src/shapes/woven.rs",
     "scene/src/shapes/grains.rs",
+    "scene/src/shapes/arrays.rs",
     "constraints/src/params.rs",
     "stepper/src/params.rs",
     "twoway/src/params.rs",
@@ -240,6 +241,9 @@ impl Page {
             "Vector" | "Point" | "[f64; 3]" => "[x, y, z]",
             "[f64; 2]" => "[x, y]",
             "[usize; 3]" => "[nx, ny, nz]",
+            "[u32; 2]" => "[i, j]",
+            "[u32; 3]" => "[i, j, k]",
+            "[u32; 4]" => "[i, j, k, l]",
             "[String; 2]" => "[name, name]",
             "Material" => "name or table",
             _ => match self.sources.variants(inner) {
@@ -484,6 +488,13 @@ fn page() -> String {
     let _ = write!(page.text, "\n`type = \"grains\"`: particles in a box.\n");
     page.head(false);
     page.rows("Grains", &Grains::default(), None, all);
+    let _ = write!(
+        page.text,
+        "\n`type = \"arrays\"`: a mesh by its arrays, for callers that have it in memory. Its elements are those \
+         of the body's kind; without any, each point is a particle.\n"
+    );
+    page.head(false);
+    page.rows("MeshArrays", &MeshArrays::default(), None, all);
     page.text
 }
 

@@ -43,6 +43,7 @@ pub fn read(section: &Section<'_>) -> Option<Shape> {
         "strands" => Shape::Strands(shape.structure(&[])),
         "woven" => Shape::Woven(shape.structure(&[])),
         "grains" => Shape::Grains(shape.structure(&[])),
+        "arrays" => Shape::Arrays(shape.structure(&[])),
         unknown => {
             let hint = nearest(unknown, Shape::NAMES.into_iter());
             let hint = hint.map_or_else(String::new, |name| format!("; did you mean {name}?"));

@@ -1,6 +1,7 @@
 //! Generated meshes: deterministic, in meters, z up, about the origin.
 
 mod animated;
+mod arrays;
 mod ball;
 mod block;
 mod cone;
@@ -26,6 +27,7 @@ mod wedge;
 mod woven;
 
 pub use animated::Animated;
+pub use arrays::MeshArrays;
 pub use ball::Ball;
 pub use block::Block;
 pub use cone::Cone;

@@ -1,6 +1,7 @@
 //! The choice among all shapes.
 
 use super::animated::Animated;
+use super::arrays::MeshArrays;
 use super::ball::Ball;
 use super::block::Block;
 use super::cone::Cone;
@@ -25,7 +26,7 @@ use bowknot_io::Mesh;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A generated mesh, or the analytic half-space; the key `type` tells which.
+/// A generated mesh, one that is given by its arrays, or the analytic half-space; the key `type` tells which.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -62,11 +63,13 @@ pub enum Shape {
     Woven(Woven),
     /// Particles in a box. For deformable bodies only.
     Grains(Grains),
+    /// A mesh by its arrays.
+    Arrays(MeshArrays),
 }
 
 impl Shape {
     /// Names that the key `type` may have.
-    pub const NAMES: [&'static str; 16] = [
+    pub const NAMES: [&'static str; 17] = [
         "sheet",
         "tube",
         "ball",
@@ -83,6 +86,7 @@ impl Shape {
         "strands",
         "woven",
         "grains",
+        "arrays",
     ];
 
     /// The kind of body that the shape makes; a half-space makes none, and counts as a surface.
@@ -91,6 +95,7 @@ impl Shape {
             Self::Block(_) | Self::TetBall(_) => BodyKind::Solid,
             Self::Strands(_) | Self::Woven(_) => BodyKind::Strands,
             Self::Grains(_) => BodyKind::Particles,
+            Self::Arrays(arrays) => arrays.kind(),
             _ => BodyKind::Cloth,
         }
     }
@@ -103,6 +108,7 @@ impl Shape {
             Self::Strands(strands) => Some(strands.mesh()),
             Self::Woven(woven) => Some(woven.mesh()),
             Self::Grains(grains) => Some(grains.mesh()),
+            Self::Arrays(arrays) => Some(arrays.mesh()),
             surface => surface.mesh().map(|TriangleMesh { positions, triangles }| Mesh {
                 positions,
                 triangles,
@@ -129,7 +135,8 @@ impl Shape {
             | Self::TetBall(_)
             | Self::Strands(_)
             | Self::Woven(_)
-            | Self::Grains(_) => None,
+            | Self::Grains(_)
+            | Self::Arrays(_) => None,
         }
     }
 
@@ -195,6 +202,7 @@ impl Parameters for Shape {
             Self::Strands(strands) => return strands.check(checks),
             Self::Woven(woven) => return woven.check(checks),
             Self::Grains(grains) => return grains.check(checks),
+            Self::Arrays(arrays) => return arrays.check(checks),
         };
         // Figures and garments have checked their edge themselves.
         let checked = matches!(self, Self::Figure(_) | Self::Garment(_));

@@ -258,7 +258,7 @@ impl Part {
     }
 
     /// Makes the tetrahedra quadratic where the body asks for that or, in a generated mesh without a choice,
-    /// where linear ones would be too stiff. The vertices of a mesh file are left as they are.
+    /// where linear ones would be too stiff. The vertices of a mesh that is given are left as they are.
     fn choose_elements(&mut self, spec: &BodySpec, warnings: &mut Vec<String>) {
         let few = match spec.elements {
             Some(SolidElements::Linear) => return,
@@ -266,7 +266,7 @@ impl Part {
             None => few_elements_across(&self.positions, &self.tets),
         };
         let Some(across) = few else { return };
-        if spec.shape.is_some() {
+        if spec.shape.as_ref().is_some_and(|shape| !matches!(shape, Shape::Arrays(_))) {
             return self.make_quadratic();
         }
         warnings.push(format!(

@@ -1,3 +1,4 @@
+mod arrays;
 mod elements;
 
 use super::mesh::segments;
