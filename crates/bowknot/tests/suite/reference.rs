@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
-const SOURCES: [&str; 36] = [
+const SOURCES: [&str; 37] = [
     "scene/src/params.rs",
     "scene/src/body.rs",
     "scene/src/obstacle.rs",
