@@ -9,6 +9,7 @@
 
 use bowknot_geometry::{EdgeTriangles, PairKind, Point, Separation, Topology, Vector};
 use bowknot_proximity::Pair;
+use serde::{Deserialize, Serialize};
 
 /// A closest point is on the boundary of its primitive if one of its weights is at most this.
 const ON_BOUNDARY: f64 = 1e-9;
@@ -51,7 +52,8 @@ pub struct Facing {
 }
 
 /// The feature of a primitive that a closest point lies on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Feature {
     /// A vertex.
     Vertex(u32),

@@ -3,6 +3,7 @@
 use crate::error::LcpError;
 use crate::vector::{TangentVector, Vector};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// A linear inequality over up to four nodes: s = offset + sum_k gradients\[k\] . y\[vertices\[k\]\] >= 0.
 ///
@@ -74,7 +75,7 @@ impl Row {
 }
 
 /// A limit on the distance between two nodes: |y_a - y_b| <= limit. Its multiplier is a vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[repr(C)]
 pub struct DistanceLimit {
     /// The nodes a and b.

@@ -126,7 +126,7 @@ fn apply<S: AsRef<str>>(source: &mut Source, sets: &[S]) -> Result<(), SceneErro
 
 impl Serialize for Scene {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        write::table(self).serialize(serializer)
+        write::table_without_ends(self).serialize(serializer)
     }
 }
 

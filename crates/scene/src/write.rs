@@ -25,6 +25,20 @@ pub(super) fn table(scene: &Scene) -> Table {
     root
 }
 
+/// As [`table`], without ends that never come: formats such as JSON have no infinity.
+pub(super) fn table_without_ends(scene: &Scene) -> Table {
+    let mut root = table(scene);
+    for (list, key) in [("obstacle", "vanishes"), ("pin", "end")] {
+        let entries = root.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten();
+        for entry in entries.filter_map(Value::as_table_mut) {
+            if entry.get(key).and_then(Value::as_float) == Some(f64::INFINITY) {
+                entry.remove(key);
+            }
+        }
+    }
+    root
+}
+
 /// As [`table`], with materials by name where all numbers are theirs, so that a change of one number, or of
 /// the name, does what it would do in a file.
 pub(super) fn table_of_names(scene: &Scene) -> Table {

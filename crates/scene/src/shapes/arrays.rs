@@ -71,7 +71,8 @@ impl Parameters for MeshArrays {
         if positions.is_empty() {
             checks.contradiction("positions", "a mesh needs vertices");
         }
-        if let Some((vertex, x)) = positions.iter().enumerate().find(|(_, x)| !x.iter().all(|c| c.is_finite()))
+        if let Some((vertex, x)) =
+            positions.iter().enumerate().find(|(_, x)| !x.iter().all(|c| c.is_finite()))
         {
             let given = format!("vertex {vertex} at ({}, {}, {})", x.x, x.y, x.z);
             checks.refuse("positions", given, "must be finite");

@@ -28,8 +28,8 @@ pub(super) fn warnings(world: &World, dt: f64, steps: usize) -> Vec<String> {
         let Step { way, time } = match &body.motion {
             ObstacleMotion::Sequence(sequence) => of_sequence(sequence, &body.presence, dt),
             ObstacleMotion::Rigid(_) => of_motion(body, base, dt, steps),
-            // Shapes that move by themselves do not jump.
-            ObstacleMotion::Rest | ObstacleMotion::Procedural(_) => return None,
+            // Shapes that move by themselves do not jump, and what a program will do is not known.
+            ObstacleMotion::Rest | ObstacleMotion::Procedural(_) | ObstacleMotion::Placed(_) => return None,
         };
         (way > JUMP * edge).then(|| {
             format!(

@@ -112,6 +112,19 @@ impl WorldBody {
         })
     }
 
+    /// Its vertices, those inside of a solid last.
+    pub fn all_vertices(&self) -> impl Iterator<Item = u32> + Clone + use<> {
+        self.vertices.clone().chain(self.interior.clone())
+    }
+
+    /// Its vertices in the order of the mesh that it was made of; none for those that no element names, which
+    /// are left out.
+    pub fn mesh_order(&self) -> Vec<Option<u32>> {
+        let mut order = vec![None; self.mesh_vertices];
+        self.all_vertices().for_each(|v| order[self.mesh_number(v) as usize] = Some(v));
+        order
+    }
+
     /// Number of one of its vertices in the mesh that it was made of, from 0.
     pub fn mesh_number(&self, vertex: u32) -> u32 {
         let local = if vertex < self.vertices.end {
@@ -124,20 +137,33 @@ impl WorldBody {
 }
 
 /// Held or led vertices of a body.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Pin {
     /// Its name in reports, such as `pin[0] of sheet`.
     pub name: String,
-    /// The vertices, ascending.
+    /// The vertices.
     pub vertices: Vec<u32>,
     /// How they move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
     /// The body, an obstacle, whose surface they follow; then there is no motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub follow: Option<u32>,
     /// When the pin takes hold [s].
     pub start: f64,
     /// When it lets go [s].
+    #[serde(default = "never", skip_serializing_if = "is_never")]
     pub end: f64,
+}
+
+/// The end of what has none. Formats such as JSON have no infinity, so it is left out.
+fn never() -> f64 {
+    f64::INFINITY
+}
+
+fn is_never(time: &f64) -> bool {
+    *time == never()
 }
 
 /// Counts of a scene, as `bowknot info --json` prints them.
@@ -192,6 +218,11 @@ impl World {
 
     fn obstacle_vertices(&self) -> usize {
         self.collision_vertices() - self.deformable_vertices
+    }
+
+    /// Index of the body of a name, an obstacle included.
+    pub fn index_of(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| body.name == name)
     }
 
     /// Which bodies, then which half-spaces, are to be there at `time`, a multiple of the time step `dt` [s].

@@ -24,6 +24,8 @@ pub enum ObstacleMotion {
     Sequence(Sequence),
     /// A generated shape that knows where its vertices are at any time.
     Procedural(Procedural),
+    /// Held at places that a program gives, one per vertex, in the scene's axes [m].
+    Placed(Arc<[Point]>),
 }
 
 /// Frames of positions over one topology.
@@ -78,6 +80,7 @@ impl ObstacleMotion {
                 placing.import(out);
                 placing.place(out);
             }
+            Self::Placed(places) => out.copy_from_slice(places),
         }
     }
 }

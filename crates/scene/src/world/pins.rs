@@ -62,11 +62,9 @@ pub(super) fn pins(
 /// The vertices of its other selectors than roots.
 fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u32>, String> {
     let at = |v: u32| &positions[v as usize];
-    let all = || body.vertices.clone().chain(body.interior.clone());
     let mut vertices = Vec::new();
     if !spec.vertices.is_empty() {
-        let mut by_number = vec![None; body.mesh_vertices];
-        all().for_each(|v| by_number[body.mesh_number(v) as usize] = Some(v));
+        let by_number = body.mesh_order();
         for &v in &spec.vertices {
             match by_number.get(v as usize) {
                 Some(Some(vertex)) => vertices.push(*vertex),
@@ -87,10 +85,10 @@ fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u
     let is_named = |v: &u32| named.binary_search(v).is_ok();
     vertices.extend(body.middles().filter(|(ends, _)| ends.iter().all(is_named)).map(|(_, middle)| middle));
     if let Some(region) = &spec.region {
-        vertices.extend(all().filter(|&v| region.contains(at(v))));
+        vertices.extend(body.all_vertices().filter(|&v| region.contains(at(v))));
     }
     if let Some(side) = spec.side {
-        let own: Vec<Point> = all().map(|v| *at(v)).collect();
+        let own: Vec<Point> = body.all_vertices().map(|v| *at(v)).collect();
         let (low, high) = bounds(&own);
         let (axis, upper) = side.axis();
         // Vertices that rounding, by a rotation for instance, moved off the side belong to it.
@@ -99,7 +97,7 @@ fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u
             let x = at(*v)[axis];
             if upper { x >= high[axis] - tolerance } else { x <= low[axis] + tolerance }
         };
-        vertices.extend(all().filter(on));
+        vertices.extend(body.all_vertices().filter(on));
     }
     Ok(vertices)
 }

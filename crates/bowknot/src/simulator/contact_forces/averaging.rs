@@ -17,6 +17,7 @@ use bowknot_constraints::Feature;
 use bowknot_dynamics::RepulsionSpring;
 use bowknot_geometry::{Point, Vector};
 use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
 
 /// Share of its height above the floor that a contact which is none any more keeps at least. Nearer, its
 /// plane is not where the bodies are: they have slid past each other.
@@ -30,7 +31,7 @@ const FORGOTTEN: f64 = 0.01;
 const MEMORY: f64 = 0.1;
 
 /// A contact near rest, for the next time step: the mean of what it was.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactMean {
     /// The two features in contact.
     pub features: [Feature; 2],

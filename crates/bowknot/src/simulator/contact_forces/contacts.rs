@@ -21,9 +21,10 @@ use bowknot_twoway::lcp::DistanceLimit;
 use bowknot_twoway::{PairMultipliers, Resolver};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
+use serde::{Deserialize, Serialize};
 
 /// What contacts remember from one time step to the next.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CarriedContacts {
     /// The forces that they carry.
     pub forces: Vec<ContactForce>,

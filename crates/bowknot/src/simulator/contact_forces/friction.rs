@@ -9,9 +9,10 @@ use bowknot_constraints::Feature;
 use bowknot_geometry::{Topology, Vector};
 use bowknot_twoway::CollisionScene;
 use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
 
 /// The force that a contact carries.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactForce {
     /// The two features in contact.
     pub features: [Feature; 2],

@@ -15,10 +15,11 @@ use bowknot_dynamics::Touching;
 use bowknot_geometry::{Point, UnionFind};
 use bowknot_scene::SleepParams;
 use bowknot_scene::world::World;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Which bodies sleep, and how long the others have been at rest. Part of the state between two time steps.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SleepState {
     /// Places that vertices at rest stay near, one entry per vertex [m].
     pub origins: Vec<Point>,

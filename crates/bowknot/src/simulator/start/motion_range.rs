@@ -41,8 +41,8 @@ impl Simulator {
                         sizes[place.floor() as usize].max(sizes[place.ceil() as usize])
                     })
                 }
-                // Generated shapes stay near where they are.
-                ObstacleMotion::Procedural(_) => continue,
+                // Generated shapes stay near where they are, and what a program will do is not known.
+                ObstacleMotion::Procedural(_) | ObstacleMotion::Placed(_) => continue,
             };
             let mut positions = world.positions.clone();
             body.motion.positions(base, time_of(step, self.dt), &mut positions[range]);

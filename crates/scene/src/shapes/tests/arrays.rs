@@ -66,6 +66,11 @@ fn arrays_are_part_of_the_scene_as_data() {
     }
     let text = toml::to_string(&scene).expect("text");
     assert!(toml::from_str::<Scene>(&text).expect("a scene") == scene, "{text}");
+    // These numbers have few digits; of others JSON may lose the last bit.
+    let text = serde_json::to_string(&scene).expect("text");
+    let read: Scene = serde_json::from_str(&text).expect("a scene");
+    assert!(read.bodies.iter().zip(&scene.bodies).all(|(a, b)| a.shape == b.shape), "{text}");
+    assert_eq!((read.obstacles, read.pins), (scene.obstacles, scene.pins));
 }
 
 #[test]
