@@ -174,6 +174,17 @@ impl Dynamics {
         Ok(())
     }
 
+    /// Sets the gravity of bodies that have none of their own [m/s^2], [`Environment::gravity`] at first. It
+    /// takes effect at the next [`Self::begin_step`].
+    ///
+    /// # Errors
+    /// A component is not finite.
+    pub fn set_gravity(&mut self, gravity: Vector) -> Result<(), Errors<ParamError>> {
+        Environment { gravity, ..self.params.environment }.validate()?;
+        self.params.environment.gravity = gravity;
+        Ok(())
+    }
+
     /// Sets the wind [m/s], [`Environment::wind`] at first. It takes effect at the next [`Self::begin_step`].
     ///
     /// # Errors
@@ -212,6 +223,14 @@ impl Dynamics {
     pub fn contact_forces(&self) -> Vec<Vector> {
         let trial = self.repulsion.watched().iter().map(|&node| self.work.x[node as usize]);
         self.repulsion.forces(&trial.collect::<Vec<_>>())
+    }
+
+    /// Force that something must exert on a vertex to lead it as it was led, at the last [`Self::residual`] [N]:
+    /// what is missing to the balance of inertia, gravity, elements and springs. On free vertices it is the
+    /// residual. None for obstacles, and where a backend computes.
+    pub fn holding_force(&self, vertex: u32) -> Option<Vector> {
+        let node = *self.model.vertex_node.get(vertex as usize)?;
+        self.work.gradient.get(node as usize).copied().filter(|_| self.device.is_none())
     }
 
     /// Positions where inertia alone leads from the start of the step [m], one entry per vertex. Obstacles
