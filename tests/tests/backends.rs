@@ -320,7 +320,7 @@ fn trees_follow_grains_that_mix_and_a_resumed_run_has_the_same_bits() {
     from_old.restore(&start).expect("the same scene");
     assert!(from_old.checkpoint() == start && start.order.is_empty());
     let wrong = Checkpoint { order: vec![Point::origin()], ..start };
-    assert!(from_old.restore(&wrong).expect_err("another scene").contains("order"));
+    assert!(from_old.restore(&wrong).expect_err("another scene").to_string().contains("order"));
 }
 
 /// Grains and two patches of cloth fall side by side; friction stops all but the second patch.

@@ -253,8 +253,8 @@ fn resume(checkpoint: &Checkpoint) -> bool {
             }
             true
         }
-        Err(message) => {
-            assert!(!message.is_empty());
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
             assert_eq!(simulator.step_index(), 0, "a refused checkpoint changes nothing");
             simulator.step().expect("a step of the state before");
             false

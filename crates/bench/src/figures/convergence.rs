@@ -5,7 +5,7 @@ use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style};
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, mean, median, short};
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use bowknot::simulator::{Checkpoint, Iterated, SimulationObserver};
 use bowknot::{Scene, Simulator};
 use serde::{Deserialize, Serialize};
@@ -293,7 +293,7 @@ impl Subject {
             let deformable = simulator.world().deformable_vertices;
             let mut all = Vec::new();
             for state in states {
-                simulator.restore(state).map_err(|message| anyhow!(message))?;
+                simulator.restore(state)?;
                 let mut again = Again { cpu: 0.0, iterations: 0, positions: Vec::new() };
                 for step in 1..=AGAIN {
                     let done = simulator.step()?;

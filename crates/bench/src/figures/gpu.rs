@@ -4,7 +4,7 @@ use super::goals::TABLE_2;
 use crate::bench::{Bench, Size};
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, geometric_mean, largest, short};
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use bowknot::dynamics::{DeviceWork, NewtonBackend};
 use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine, Profile, StageTime};
 use bowknot::simulator::{Checkpoint, CollisionBackend};
@@ -207,12 +207,10 @@ impl Course {
             simulator.set_backend(collisions)?;
             simulator.set_dynamics_backend(Some(dynamics))?;
         }
-        let restore =
-            |simulator: &mut Simulator| simulator.restore(&self.lead).map_err(|message| anyhow!(message));
-        restore(&mut simulator)?;
+        simulator.restore(&self.lead)?;
         if is_device {
             simulator.step()?;
-            restore(&mut simulator)?;
+            simulator.restore(&self.lead)?;
         }
         let (mut statistics, mut centers, mut seconds) = (Vec::new(), Vec::new(), 0.0);
         while statistics.is_empty() || statistics.len() < STEPS && (is_device || seconds < CPU_SECONDS) {

@@ -3,7 +3,7 @@
 use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, mean, times};
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use bowknot::check::StateOptions;
 use bowknot::simulator::Checkpoint;
 use bowknot::{Scene, Simulator};
@@ -169,7 +169,7 @@ fn ends(bench: &Bench, subject: &Subject, joint: bool, iterations: usize) -> Res
         };
         for state in states(bench, subject)? {
             let mut simulator = Simulator::new(&scene)?;
-            simulator.restore(&state).map_err(|message| anyhow!(message))?;
+            simulator.restore(&state)?;
             let done = simulator.step()?;
             let x = simulator.positions();
             let world = simulator.world();

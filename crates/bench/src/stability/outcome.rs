@@ -122,9 +122,9 @@ pub fn run(case: &Case, folder: &Path) -> Result<Outcome> {
         }
     };
     if let Some(state) = case.start(&simulator)
-        && let Err(message) = simulator.restore(&state)
+        && let Err(error) = simulator.restore(&state)
     {
-        bail!("{}: {message}", case.name());
+        bail!("{}: {error}", case.name());
     }
     let world = simulator.world().clone();
     let mut judged = Judged { checker: Checker::new(&simulator), world: world.clone(), error: None };

@@ -159,7 +159,7 @@ fn simulator(scene: &Scene) -> Result<Simulator, SimulationError> {
 
 fn restore(simulator: &mut Simulator, start: &Checkpoint) -> Result<(), SimulationError> {
     let restored = simulator.restore(start);
-    restored.map_err(|message| SimulationError::Internal { step: start.step, message })
+    restored.map_err(|error| SimulationError::Internal { step: start.step, message: error.to_string() })
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The file of a checkpoint.
 
-use crate::simulator::{CarriedContacts, Checkpoint, ContactForce, ContactMean, SleepState};
+use crate::simulator::{CarriedContacts, Checkpoint, ContactForce, ContactMean, Driven, SleepState};
 use bowknot_constraints::Feature;
 use bowknot_dynamics::{RepulsionSpring, SpringKind};
 use bowknot_geometry::{Point, Vector};
@@ -16,6 +16,9 @@ const CHECKSUM: &str = "checksum";
 /// The array of edges that yield to prescribed vertices.
 const YIELDING: &str = "yielding_edges";
 
+/// The array of what a program has changed.
+const DRIVEN: &str = "driven";
+
 /// The array of the positions by which a device orders what it searches in.
 const ORDER: &str = "search_order";
 
@@ -28,7 +31,8 @@ impl Checkpoint {
     /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back); `yielding_edges[e,3]`, if
     /// there are any (two vertices, limit); where bodies
     /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); in runs on a device
-    /// `search_order[v,3]` after 64 time steps; and `checksum[8]` of all that.
+    /// `search_order[v,3]` after 64 time steps; where a program has changed something `driven[b]`, the bytes of
+    /// [`Checkpoint::driven`] as TOML; and `checksum[8]` of all that.
     ///
     /// # Errors
     /// The system's refusal, with the path.
@@ -36,6 +40,7 @@ impl Checkpoint {
         let points = |points: &[Point]| table(points.iter().map(|p| [p.x, p.y, p.z]));
         let vectors = |vectors: &[Vector]| table(vectors.iter().map(|v| [v.x, v.y, v.z]));
         let CarriedContacts { forces, means, yielding } = &self.contacts;
+        let driven = text_of(&self.driven);
         let of_forces = |vector: fn(&ContactForce) -> Vector| {
             vectors(&forces.iter().map(vector).collect::<Vec<Vector>>())
         };
@@ -65,7 +70,10 @@ impl Checkpoint {
             if !self.order.is_empty() {
                 archive.add_array(ORDER, &points(&self.order))?;
             }
-            archive.add_array(CHECKSUM, &Array1::from_iter(checksum(self)))
+            if !driven.is_empty() {
+                archive.add_array(DRIVEN, &Array1::from_iter(driven.bytes()))?;
+            }
+            archive.add_array(CHECKSUM, &Array1::from_iter(checksum(self, driven.as_bytes())))
         })
     }
 
@@ -92,6 +100,7 @@ impl Checkpoint {
             },
             sleep: SleepState::default(),
             order: archive.rows::<3>(ORDER)?.unwrap_or_default().into_iter().map(Point::from).collect(),
+            driven: Driven::default(),
         };
         if archive.has("sleep_origins") {
             let narrow = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
@@ -101,13 +110,27 @@ impl Checkpoint {
             checkpoint.sleep.calm_steps = narrow(integers(&mut archive, "sleep_calm_steps")?);
             checkpoint.sleep.islands = narrow(integers(&mut archive, "sleep_islands")?);
         }
-        let sum: Vec<u64> = checksum(&checkpoint).iter().map(|&byte| u64::from(byte)).collect();
+        let mut driven = Vec::new();
+        if archive.has(DRIVEN) {
+            let bytes = integers(&mut archive, DRIVEN)?;
+            driven = bytes.into_iter().map(|byte| u8::try_from(byte).unwrap_or_default()).collect();
+            let text = String::from_utf8_lossy(&driven);
+            checkpoint.driven =
+                toml::from_str(&text).map_err(|error| archive.fault(DRIVEN, error.message().to_owned()))?;
+        }
+        let sum: Vec<u64> = checksum(&checkpoint, &driven).iter().map(|&byte| u64::from(byte)).collect();
         if integers(&mut archive, CHECKSUM)? != sum {
             let message = "the content is not what was written: the file is damaged";
             return Err(archive.fault(CHECKSUM, message));
         }
         Ok(checkpoint)
     }
+}
+
+/// What a program has changed, as text; empty if that is nothing.
+fn text_of(driven: &Driven) -> String {
+    // No field is one that TOML cannot hold; a test writes and reads all of them.
+    if *driven == Driven::default() { String::new() } else { toml::to_string(driven).unwrap_or_default() }
 }
 
 /// Rows as an array.
@@ -228,10 +251,11 @@ fn yielding(archive: &mut Archive<'_>) -> Result<Vec<DistanceLimit>, IoError> {
     Ok(rows.into_iter().map(edge).collect())
 }
 
-/// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards
+/// The checksum of a checkpoint's content, with the text of what is `driven`. CRCs of the archive guard its arrays one by one; this one guards
 /// them together, so that no array is of another checkpoint, or left out.
-fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
-    let Checkpoint { step, positions, velocities, anchors, present, contacts, sleep, order } = checkpoint;
+fn checksum(checkpoint: &Checkpoint, driven: &[u8]) -> [u8; 8] {
+    let Checkpoint { step, positions, velocities, anchors, present, contacts, sleep, order, driven: _ } =
+        checkpoint;
     let mut sum = Checksum(0);
     sum.add(*step as u64);
     sum.points(positions);
@@ -261,6 +285,7 @@ fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
     if !order.is_empty() {
         sum.points(order);
     }
+    driven.iter().for_each(|&byte| sum.add(u64::from(byte)));
     sum.0.to_le_bytes()
 }
 

@@ -154,7 +154,7 @@ impl RunWriter {
         })?;
         // A run that ended before its first checkpoint goes on from the start.
         if let Some(checkpoint) = checkpoint {
-            simulator.restore(&checkpoint).map_err(fault)?;
+            simulator.restore(&checkpoint).map_err(|error| fault(error.to_string()))?;
         }
         prepare(folder, scene)?;
         io::write_text(&path, &scene.to_toml())?;

@@ -1,7 +1,9 @@
 //! Why a simulation cannot begin or go on.
 
 use super::backend::BackendError;
+use super::drive::DriveError;
 use super::report::element_words;
+use super::restore_error::RestoreError;
 use bowknot_check::{CheckError, Intersection};
 use bowknot_dynamics::{Errors, ParamError, StepError};
 use bowknot_errors::counted;
@@ -26,6 +28,12 @@ pub enum SimulationError {
     /// The state cannot be judged.
     #[error(transparent)]
     Check(#[from] CheckError),
+    /// A change between time steps is refused.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
+    /// A checkpoint is refused.
+    #[error(transparent)]
+    Restore(#[from] RestoreError),
     /// Bodies intersect at the start.
     #[error("{}", start_message(.lines, .count, .advice))]
     StartIntersects {

@@ -6,12 +6,14 @@
 //! - `contact_forces`, `stretch_limits`: what the dynamics knows of contacts, and of edges at their limits;
 //! - `sleep`: bodies at rest;
 //! - `prescribed`: obstacles and pins;
+//! - `drive`: what a program changes between time steps;
 //! - `start`: what is checked before the first time step;
 //! - `report`: statistics and observers.
 
 mod backend;
 mod checkpoint;
 mod contact_forces;
+mod drive;
 mod error;
 mod finished;
 mod interior;
@@ -19,6 +21,7 @@ mod newton_iterations;
 mod prescribed;
 mod report;
 mod restore;
+mod restore_error;
 mod search_order;
 mod sleep;
 mod start;
@@ -29,16 +32,18 @@ mod tolerance;
 pub use backend::{BackendError, CollisionBackend, Cpu};
 pub use checkpoint::Checkpoint;
 pub use contact_forces::{CarriedContacts, ContactForce, ContactMean};
+pub use drive::{DriveError, Driven, ObstacleDrive};
 pub use error::{SimulationError, describe_intersections};
 pub use report::{
-    AcceptedStep, CollisionProblem, Energy, Iterated, SimulationObserver, StepSeconds, StepStatistics,
-    Unsolved, WaitingElements, cpu_seconds, peak_memory_bytes,
+    AcceptedStep, CollisionProblem, Contact, Energy, Iterated, SimulationObserver, StepSeconds,
+    StepStatistics, Unsolved, WaitingElements, Wrench, cpu_seconds, peak_memory_bytes,
 };
+pub use restore_error::RestoreError;
 pub use sleep::SleepState;
 pub use start::NearStart;
 pub use stretch_limits::{HeldApart, HeldPair};
 
-use bowknot_check::{Judge, StateOptions, StateReport};
+use bowknot_check::{CheckError, Judge, StateOptions, StateReport};
 use bowknot_dynamics::{DeviceWork, Dynamics, DynamicsModel, NewtonBackend};
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
@@ -82,13 +87,23 @@ pub struct Simulator {
     contacts: Contacts,
     /// Bodies at rest; none if they never sleep.
     sleeping: Option<SleepingBodies>,
-    /// Forces that the caller has set, by vertex [N]; empty before.
-    external_forces: Vec<Vector>,
-    /// Bodies on which forces have been changed since the last time step; may be empty.
-    pushed: Vec<bool>,
+    /// See [`Self::pin_forces`].
+    pin_forces: Vec<Vec<Vector>>,
+    /// What a program has changed.
+    driven: Driven,
+    home: Home,
+    /// The world without the pins and motions that a program has changed.
+    undriven: Arc<World>,
     /// See [`Self::set_measured`].
     measured: bool,
     scratch: Scratch,
+}
+
+/// What the simulation began with.
+#[derive(Clone, Debug)]
+pub(crate) struct Home {
+    scene: Arc<Scene>,
+    world: Arc<World>,
 }
 
 /// Buffers of a time step; nothing in them outlives it.
@@ -111,22 +126,45 @@ impl Simulator {
     /// Whatever is wrong with the scene or its meshes; a start that already intersects, with the first
     /// pairs.
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
-        let mut simulator = Self::without_start_check(scene)?;
+        Self::of_world(World::new(scene)?, scene)
+    }
+
+    /// As [`Self::new`], with the `world` of the scene as the caller has made or changed it: other positions,
+    /// which are also the rest shapes, other velocities, other pins.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; a world of other bodies than the scene, or whose lists differ in length.
+    pub fn from_world(world: World, scene: &Scene) -> Result<Self, SimulationError> {
+        scene.validate()?;
+        start::check_world(&world, scene)?;
+        Self::of_world(world, scene)
+    }
+
+    fn of_world(world: World, scene: &Scene) -> Result<Self, SimulationError> {
+        let world = Arc::new(world);
+        let home = Home { scene: Arc::new(scene.clone()), world: Arc::clone(&world) };
+        let mut simulator = Self::at_start(world, home, None)?;
         simulator.apply_filters()?;
-        let options = StateOptions { limit: NAMED_PAIRS, distance: false };
-        let count = simulator.world.collision_vertices();
-        let report = simulator.judge().check_state(&simulator.positions[..count], &options)?;
-        if report.is_clear() {
-            let enclosed = start::enclosed_bodies(&simulator.world, &simulator.present);
-            enclosed.iter().for_each(|body| tracing::warn!("{body}"));
-            simulator.find_contacts(CarriedContacts::default())?;
-            return Ok(simulator);
+        if let Some((lines, count)) = simulator.intersections()? {
+            let positions = &simulator.positions[..simulator.world.collision_vertices()];
+            let all = StateOptions { limit: usize::MAX, distance: false };
+            let all = simulator.judge().check_state(positions, &all)?;
+            let advice = start::advice(&simulator.world, &all.intersections);
+            return Err(SimulationError::StartIntersects { lines, count, advice });
         }
-        let lines = describe_intersections(&simulator.world, &report.intersections);
-        let all = StateOptions { limit: usize::MAX, distance: false };
-        let all = simulator.judge().check_state(&simulator.positions[..count], &all)?;
-        let advice = start::advice(&simulator.world, &all.intersections);
-        Err(SimulationError::StartIntersects { lines, count: report.intersection_count, advice })
+        let enclosed = start::enclosed_bodies(&simulator.world, &simulator.present);
+        enclosed.iter().for_each(|body| tracing::warn!("{body}"));
+        simulator.find_contacts(CarriedContacts::default())?;
+        Ok(simulator)
+    }
+
+    /// The first pairs that intersect in the present state, in words, and how many do in all; none if none does.
+    fn intersections(&self) -> Result<Option<(Vec<String>, usize)>, CheckError> {
+        let options = StateOptions { limit: NAMED_PAIRS, distance: false };
+        let positions = &self.positions[..self.world.collision_vertices()];
+        let report = self.judge().check_state(positions, &options)?;
+        let lines = || describe_intersections(&self.world, &report.intersections);
+        Ok((!report.is_clear()).then(|| (lines(), report.intersection_count)))
     }
 
     /// The scene's world and all intersections of its start, for a dump.
@@ -148,8 +186,10 @@ impl Simulator {
         if self.step == 0 { start::near_starts(&self.world, &self.resolver) } else { Vec::new() }
     }
 
-    fn without_start_check(scene: &Scene) -> Result<Self, SimulationError> {
-        let world = World::new(scene)?;
+    /// A simulator at the start of its world, whatever intersects there. The `scene` is that of the world, None for
+    /// the one that the simulation began with.
+    fn at_start(world: Arc<World>, home: Home, changed: Option<Box<Scene>>) -> Result<Self, SimulationError> {
+        let scene = changed.as_deref().unwrap_or(&home.scene);
         let model = world.dynamics_model()?;
         let count = world.collision_vertices();
         let (rest_positions, masses) = (&model.rest_positions()[..count], &model.masses()[..count]);
@@ -179,11 +219,13 @@ impl Simulator {
             search_order: SearchOrder::default(),
             contacts,
             sleeping,
-            external_forces: Vec::new(),
-            pushed: Vec::new(),
             measured: true,
             scratch: Scratch::default(),
-            world: Arc::new(world),
+            pin_forces: Vec::new(),
+            undriven: Arc::clone(&world),
+            world,
+            driven: Driven { scene: changed, ..Driven::default() },
+            home,
         })
     }
 

@@ -2,11 +2,12 @@
 
 use super::Simulator;
 use super::checkpoint::Checkpoint;
+use super::restore_error::RestoreError;
 use super::sleep::SleepState;
-use bowknot_errors::counted;
+use bowknot_scene::Scene;
 
 impl Simulator {
-    /// The state, in full.
+    /// The state, in full, with all that a program has changed.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             step: self.step,
@@ -17,66 +18,119 @@ impl Simulator {
             contacts: self.carried(),
             sleep: self.sleep_state(),
             order: self.search_order.positions.clone(),
+            driven: self.driven.clone(),
         }
     }
 
-    /// Goes on from a state of the same scene.
+    /// Goes on from a state of the same scene, with what a program had changed then and without what it has
+    /// changed since.
+    ///
+    /// **The state must be free of intersections**, as that of every checkpoint is. One that is not stays so, or
+    /// worse: [`Self::restore_checked`] looks.
     ///
     /// # Errors
-    /// What does not fit, in words; the simulator is then as it was.
-    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), String> {
-        let vertices = self.positions.len();
+    /// What does not fit; the simulator is then as it was.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
+        self.restore_if(checkpoint, |_| Ok(()))
+    }
+
+    /// As [`Self::restore`], for states from elsewhere: the exact judge looks at it, at the cost of about a
+    /// two-way step.
+    ///
+    /// # Errors
+    /// What does not fit; [`RestoreError::Intersects`] with the pairs. The simulator is then as it was.
+    pub fn restore_checked(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
+        self.restore_if(checkpoint, |simulator| {
+            match simulator.intersections().map_err(RestoreError::refused)? {
+                Some((lines, count)) => Err(RestoreError::Intersects { lines, count }),
+                None => Ok(()),
+            }
+        })
+    }
+
+    /// Restores a state that is `accepted` once it is in place.
+    fn restore_if(
+        &mut self,
+        checkpoint: &Checkpoint,
+        accepted: impl Fn(&Self) -> Result<(), RestoreError>,
+    ) -> Result<(), RestoreError> {
+        // Checkpoints do not hold the folder of mesh files.
+        let in_folder =
+            |scene: Box<Scene>| Box::new(Scene { folder: self.home.scene.folder.clone(), ..*scene });
+        let scene = checkpoint.driven.scene.clone().map(in_folder);
+        if scene != self.driven.scene {
+            let mut other = self.rebuilt(scene).map_err(RestoreError::refused)?;
+            other.restore_here(checkpoint, accepted)?;
+            return self.give_way_to(other).map_err(RestoreError::refused);
+        }
+        self.restore_here(checkpoint, accepted)
+    }
+
+    /// Restores a state with the bodies that there are.
+    fn restore_here(
+        &mut self,
+        checkpoint: &Checkpoint,
+        accepted: impl Fn(&Self) -> Result<(), RestoreError>,
+    ) -> Result<(), RestoreError> {
+        self.check_fits(checkpoint)?;
+        let before = self.checkpoint();
+        let restored = self.adopt(checkpoint).and_then(|()| accepted(self));
+        if restored.is_err() {
+            // The state before was a sound one.
+            let _ = self.adopt(&before);
+        }
+        restored
+    }
+
+    /// Whether the parts of a state are of the size that the bodies have, and name what there is.
+    fn check_fits(&self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
+        let expected = self.positions.len();
         for (what, given) in
             [("positions", checkpoint.positions.len()), ("velocities", checkpoint.velocities.len())]
         {
-            if given != vertices {
-                let vertices = counted(vertices, "vertex", "vertices");
-                return Err(format!("its {what} are {given}, but the scene has {vertices}"));
+            if given != expected {
+                return Err(RestoreError::Length { what, given, expected });
             }
         }
-        let fits = checkpoint.anchors.len() == self.world.pins.len()
-            && checkpoint
-                .anchors
-                .iter()
-                .zip(&self.world.pins)
-                .all(|(a, p)| a.is_empty() || a.len() == p.vertices.len());
-        if !fits {
-            return Err("its pins are not those of the scene".to_owned());
+        self.check_driven(&checkpoint.driven)?;
+        let pins = checkpoint.driven.pins.as_ref().unwrap_or(&self.undriven.pins);
+        let is_of = |(anchors, pin): (&Vec<_>, &bowknot_scene::world::Pin)| {
+            anchors.is_empty() || anchors.len() == pin.vertices.len()
+        };
+        if checkpoint.anchors.len() != pins.len() || !checkpoint.anchors.iter().zip(pins).all(is_of) {
+            return Err(RestoreError::Pins);
         }
         if checkpoint.present.len() != self.present.len() {
-            return Err("its obstacles are not those of the scene".to_owned());
+            return Err(RestoreError::Obstacles);
         }
         let (bodies, sleep) = (self.world.bodies.len(), &checkpoint.sleep);
         let is_island = |island: &u32| *island == SleepState::AWAKE || (*island as usize) < bodies;
         let fits = sleep.origins.is_empty()
-            || (sleep.origins.len() == vertices
+            || (sleep.origins.len() == expected
                 && sleep.calm_steps.len() == bodies
                 && sleep.islands.len() == bodies
                 && sleep.islands.iter().all(is_island));
         if !fits {
-            return Err("its bodies asleep are not those of the scene".to_owned());
+            return Err(RestoreError::Sleep);
         }
         if ![0, self.world.collision_vertices()].contains(&checkpoint.order.len()) {
-            return Err("its order of a search is not one of the scene".to_owned());
+            return Err(RestoreError::Order);
         }
-        let before = self.checkpoint();
-        self.adopt(checkpoint);
-        self.take_out(checkpoint.contacts.clone()).map_err(|error| {
-            self.adopt(&before);
-            // The state before was a sound one.
-            let _ = self.take_out(before.contacts);
-            error.to_string()
-        })
+        Ok(())
     }
 
-    fn adopt(&mut self, checkpoint: &Checkpoint) {
+    /// Takes a state over that fits.
+    fn adopt(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
         self.step = checkpoint.step;
         self.positions.clone_from(&checkpoint.positions);
         self.velocities.clone_from(&checkpoint.velocities);
         self.anchors.clone_from(&checkpoint.anchors);
         self.present.clone_from(&checkpoint.present);
         self.search_order.adopt(&checkpoint.order);
-        self.attachments.iter_mut().for_each(Vec::clear);
+        self.adopt_driven(&checkpoint.driven);
         self.adopt_sleep_state(&checkpoint.sleep);
+        self.take_out(checkpoint.contacts.clone()).map_err(RestoreError::refused)?;
+        // After that, as it may set up the dynamics of the bodies that are awake.
+        self.apply_surroundings().map_err(|error| RestoreError::Refused { source: error.into() })
     }
 }

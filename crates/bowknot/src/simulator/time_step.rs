@@ -73,6 +73,7 @@ impl Simulator {
         let dynamics = sleeping.as_mut().and_then(SleepingBodies::dynamics).unwrap_or(dynamics);
         dynamics.end_velocities(positions, &scratch.prescribed, contacts.touching(), velocities);
         statistics.waiting = self.waiting(time, &scratch);
+        self.record_pin_forces(time);
         statistics.prescribed_lag_m = statistics.waiting.values().copied().fold(0.0, f64::max);
         self.scratch = scratch;
         self.step = step;

@@ -10,6 +10,8 @@ mod bad_bodies;
 mod bad_input;
 /// Solids, strands, particles, friction and sequences, from scene to motion.
 mod bodies;
+/// Pins, obstacles, forces and bodies changed by code.
+mod drive;
 /// Linear and quadratic elements of solids.
 mod elements;
 /// Stretch limits of fabrics, and what overrides them.

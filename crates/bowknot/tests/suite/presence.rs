@@ -262,7 +262,10 @@ fn a_checkpoint_tells_what_is_there_to_the_same_bits() {
     }
     let mut other = checkpoints[0].clone();
     other.present.pop();
-    assert_eq!(straight.restore(&other).expect_err("too few"), "its obstacles are not those of the scene");
+    assert_eq!(
+        straight.restore(&other).expect_err("too few").to_string(),
+        "its obstacles are not those of the scene"
+    );
 }
 
 /// Vertices of a plate of 40 cm, and its triangles.

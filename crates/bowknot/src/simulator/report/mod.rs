@@ -1,6 +1,7 @@
 //! What a simulation reports: the statistics of a time step, what held it back, and what observers see.
 
 mod blocking;
+mod contacts;
 mod observer;
 mod process;
 mod statistics;
@@ -8,6 +9,7 @@ mod unsolved;
 
 pub use blocking::WaitingElements;
 pub(crate) use blocking::element_words;
+pub use contacts::{Contact, Wrench};
 pub(crate) use observer::Relay;
 pub use observer::{AcceptedStep, CollisionProblem, Iterated, SimulationObserver};
 pub use process::{cpu_seconds, peak_memory_bytes};

@@ -6,7 +6,7 @@ use super::{Awake, SleepingBodies};
 use crate::simulator::contact_forces::CarriedContacts;
 use crate::simulator::error::SimulationError;
 use crate::simulator::{Scratch, Simulator, time_of};
-use bowknot_dynamics::{Dynamics, Energies, Errors, ParamError, StepError};
+use bowknot_dynamics::{Dynamics, Energies};
 use bowknot_geometry::Vector;
 
 impl Simulator {
@@ -16,48 +16,11 @@ impl Simulator {
         self.sleeping.as_ref().map_or(&[], |sleeping| &sleeping.asleep)
     }
 
-    /// Sets the wind [m/s], [`bowknot_dynamics::Environment::wind`] at first, from the next time step on. It
-    /// has an effect where `air_density` is above 0, and then wakes all bodies. Checkpoints do not have it.
-    ///
-    /// # Errors
-    /// A component is not finite.
-    pub fn set_wind(&mut self, wind: Vector) -> Result<(), Errors<ParamError>> {
-        let environment = self.dynamics.params().environment;
-        self.dynamics.set_wind(wind)?;
-        if let Some(dynamics) = self.sleeping.as_mut().and_then(SleepingBodies::dynamics) {
-            dynamics.set_wind(wind)?;
-        }
-        if environment.wind != wind && environment.air_density > 0.0 {
-            self.pushed = vec![true; self.world.bodies.len()];
-        }
-        Ok(())
-    }
-
-    /// Sets the force on each vertex of the world [N], 0 at first, from the next time step on. It is kept
-    /// until it is set again, and wakes the bodies on which it changes. Checkpoints do not have it.
-    ///
-    /// # Errors
-    /// Another number of forces than of vertices, or one that is not finite.
-    pub fn set_external_forces(&mut self, forces: &[Vector]) -> Result<(), StepError> {
-        self.dynamics.set_external_forces(forces)?;
-        if let Some(dynamics) = self.sleeping.as_mut().and_then(SleepingBodies::dynamics) {
-            dynamics.set_external_forces(forces)?;
-        }
-        self.pushed.resize(self.world.bodies.len(), false);
-        let before = |v: usize| self.external_forces.get(v).copied().unwrap_or_else(Vector::zeros);
-        for (body, pushed) in self.world.bodies.iter().zip(&mut self.pushed) {
-            let mut vertices = body.vertices.clone().chain(body.interior.clone()).map(|v| v as usize);
-            *pushed |= vertices.any(|v| forces[v] != before(v));
-        }
-        self.external_forces = forces.to_vec();
-        Ok(())
-    }
-
     /// Wakes bodies before a time step that ends at `time`: those that something comes near, those whose
     /// pins take hold, let go or move, and those on which forces have changed. The other bodies asleep become
     /// prescribed.
     pub(crate) fn wake_for_step(&mut self, time: f64, scratch: &mut Scratch) -> Result<(), SimulationError> {
-        let mut wakes = std::mem::take(&mut self.pushed);
+        let mut wakes = std::mem::take(&mut self.driven.pushed);
         let Some(sleeping) = &mut self.sleeping else { return Ok(()) };
         sleeping.record_hold(&self.world, &scratch.prescribed, &scratch.keyframes, &scratch.start);
         if wakes.contains(&true) {
@@ -151,7 +114,9 @@ impl Simulator {
     /// contacts; `carried` is what all contacts remember.
     pub(crate) fn take_out(&mut self, carried: CarriedContacts) -> Result<(), SimulationError> {
         self.apply_filters()?;
-        let Self { world, resolver, contacts, step, dynamics, positions, velocities, sleeping, .. } = self;
+        let Self {
+            world, resolver, contacts, step, dynamics, positions, velocities, sleeping, driven, ..
+        } = self;
         let Some(sleeping) = sleeping else { return self.find_contacts(carried) };
         let asleep = sleeping.sleep.asleep();
         if asleep != sleeping.asleep {
@@ -166,8 +131,8 @@ impl Simulator {
             set(dynamics, backend)?;
             if asleep.contains(&true) {
                 let mut awake = Awake::new(world, &asleep, dynamics, positions)?;
-                if !self.external_forces.is_empty() {
-                    let forced = awake.dynamics.set_external_forces(&self.external_forces);
+                if !driven.external_forces.is_empty() {
+                    let forced = awake.dynamics.set_external_forces(&driven.external_forces);
                     forced.map_err(|source| SimulationError::Target { step: *step, source })?;
                 }
                 set(&mut awake.dynamics, dynamics.take_backend())?;

@@ -1,0 +1,122 @@
+//! A simulator of a changed scene, and how it takes the place of the one before.
+
+use super::error::DriveError;
+use super::renumber::renumbered;
+use crate::simulator::Simulator;
+use crate::simulator::error::SimulationError;
+use bowknot_dynamics::StepError;
+use bowknot_scene::world::World;
+use bowknot_scene::{BodySpec, Scene, SceneError};
+use std::sync::Arc;
+
+impl Simulator {
+    /// The scene as it is now: that which the simulation began with, or, after bodies, materials or frictions
+    /// have changed, the changed one.
+    pub fn scene(&self) -> &Scene {
+        self.driven.scene.as_deref().unwrap_or(&self.home.scene)
+    }
+
+    /// Goes on with a changed scene, or stays as it is. What is `added` must not intersect.
+    pub(super) fn change_scene(
+        &mut self,
+        added: Option<&str>,
+        change: impl FnOnce(&mut Scene),
+    ) -> Result<(), SimulationError> {
+        let mut scene = self.scene().clone();
+        // The pins of the world count.
+        scene.pins.clear();
+        let lengths = self.resolver.scene().lengths();
+        scene.contact.delta.get_or_insert(lengths.delta);
+        scene.contact.min_separation.get_or_insert(lengths.min_separation);
+        scene.contact.separation_speed.get_or_insert(lengths.separation_speed);
+        change(&mut scene);
+        let mut next = self.rebuilt(Some(Box::new(scene)))?;
+        next.restore(&renumbered(self, &next))?;
+        if let Some(name) = added {
+            next.refuse_intersections(name)?;
+        }
+        self.give_way_to(next)
+    }
+
+    /// A simulator at the start of a scene, None for that which this one began with. Bodies that both scenes have
+    /// keep their rest shapes.
+    pub(crate) fn rebuilt(&self, scene: Option<Box<Scene>>) -> Result<Self, SimulationError> {
+        let world = match &scene {
+            None => Arc::clone(&self.home.world),
+            Some(scene) => Arc::new(world_of(scene, self.scene(), &self.world)?),
+        };
+        let mut next = Self::at_start(world, self.home.clone(), scene)?;
+        next.measured = self.measured;
+        next.apply_filters()?;
+        Ok(next)
+    }
+
+    /// Lets another simulator take the place of this one, with the backends that this one has.
+    pub(crate) fn give_way_to(&mut self, mut next: Self) -> Result<(), SimulationError> {
+        let has_backend = self.dynamics_backend().is_some();
+        if let Some(body) = next.world.quadratic_bodies().next().filter(|_| has_backend) {
+            let source = StepError::QuadraticElements { body: body.to_owned() };
+            return Err(SimulationError::target(self.step, source));
+        }
+        let home =
+            |simulator: &Self| simulator.world.positions[..simulator.world.collision_vertices()].to_vec();
+        if let Err(source) = self.backend.prepare(next.resolver.scene(), &home(&next)) {
+            let before = home(self);
+            // It was prepared for this scene before.
+            let _ = self.backend.prepare(self.resolver.scene(), &before);
+            return Err(SimulationError::backend(&self.world, self.step, source));
+        }
+        std::mem::swap(&mut self.backend, &mut next.backend);
+        next.search_order.tell_again();
+        next.set_dynamics_backend(self.active_dynamics().take_backend())?;
+        *self = next;
+        Ok(())
+    }
+
+    /// Refuses a state in which something `placed` intersects, or anything else.
+    pub(super) fn refuse_intersections(&self, placed: &str) -> Result<(), SimulationError> {
+        match self.intersections()? {
+            None => Ok(()),
+            Some((lines, count)) => {
+                Err(DriveError::Intersects { what: placed.to_owned(), lines, count }.into())
+            }
+        }
+    }
+}
+
+/// The world of a changed scene. Bodies that are as in the scene `before` but for their materials keep the rest
+/// shapes that they have in its world: files may have changed, and a program may have made that world.
+fn world_of(scene: &Scene, before: &Scene, world_before: &World) -> Result<World, SceneError> {
+    let mut world = World::new(scene)?;
+    let is_same = |name: &str| {
+        let of = |scene: &Scene| scene.bodies.iter().find(|spec| spec.name == name).cloned();
+        let plain = |spec: BodySpec| BodySpec { friction: 0.0, material: Default::default(), ..spec };
+        match (of(scene), of(before)) {
+            (Some(now), Some(then)) => plain(now) == plain(then),
+            (None, None) => {
+                scene.obstacles.iter().find(|o| o.name == name).map(|o| (&o.mesh, &o.shape))
+                    == before.obstacles.iter().find(|o| o.name == name).map(|o| (&o.mesh, &o.shape))
+            }
+            _ => false,
+        }
+    };
+    for body in &world.bodies {
+        let Some(then) =
+            world_before.bodies.iter().find(|then| then.name == body.name && is_same(&body.name))
+        else {
+            continue;
+        };
+        for (now, then) in [(&body.vertices, &then.vertices), (&body.interior, &then.interior)] {
+            let range = |range: &std::ops::Range<u32>| range.start as usize..range.end as usize;
+            if now.len() != then.len() {
+                let message = format!("the mesh of {} has changed", body.name);
+                return Err(SceneError::Model(message));
+            }
+            world.positions[range(now)].copy_from_slice(&world_before.positions[range(then)]);
+            if range(now).end <= world.base.len() {
+                world.base[range(now)].copy_from_slice(&world_before.base[range(then)]);
+            }
+        }
+    }
+    Ok(world)
+}
