@@ -1,5 +1,5 @@
-//! Two fingers of a robot close on a soft block, lift it and hold it. What the contacts exert on the fingers must
-//! carry the block's weight.
+//! Two fingers of a robot close on a soft block, lift it and hold it. What the contacts exert on the fingers
+//! must carry the block's weight.
 //!
 //! ```text
 //! cargo run --release -p bowknot --example fingers
@@ -77,4 +77,9 @@ fn main() -> Result<(), SimulationError> {
     println!("error of the force balance while it is held: {:.2} % of the weight", 100.0 * error);
     assert!(error < ACCEPTED, "the fingers carry {carried:?}");
     Ok(())
+}
+
+#[test]
+fn fingers_carry_the_weight_of_what_they_hold() {
+    main().unwrap_or_else(|error| panic!("{error}"));
 }

@@ -1,5 +1,5 @@
-//! A cloth in the loop of a game: its mesh comes from arrays, a hand grabs its corner, moves as the loop says,
-//! grabs more of it, and lets go.
+//! A cloth in the loop of a game: its mesh comes from arrays, a hand grabs its corner, moves as the loop
+//! says, grabs more of it, and lets go.
 //!
 //! ```text
 //! cargo run --release -p bowknot --example game_loop
@@ -74,4 +74,9 @@ fn main() -> Result<(), SimulationError> {
         }
     }
     Ok(())
+}
+
+#[test]
+fn a_hand_lifts_the_cloth_and_lets_go() {
+    main().unwrap_or_else(|error| panic!("{error}"));
 }

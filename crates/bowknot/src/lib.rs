@@ -15,7 +15,7 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`simulator`] | the time-step loop, its statistics, checkpoints |
+//! | [`simulator`] | the time-step loop, its statistics, changes by code between steps, checkpoints |
 //! | `run` | whole runs: the output folder, resuming, checking as it goes (feature `files`) |
 //! | `recording` | collision problems, recorded and solved again (feature `files`) |
 //! | `gpu` | collisions on a GPU (feature `gpu`) |
@@ -64,5 +64,5 @@ pub use bowknot_stepper as stepper;
 pub use bowknot_twoway as twoway;
 
 pub use scene::{BUILTIN, Scene, SceneError};
-pub use simulator::{SimulationError, SimulationObserver, Simulator, StepStatistics};
+pub use simulator::{DriveError, SimulationError, SimulationObserver, Simulator, StepStatistics};
 pub use world::{SceneInfo, World};

@@ -347,6 +347,36 @@ fn features(archive: &Archive<'_>, name: &str, codes: [f64; 4]) -> Result<[Featu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulator::ObstacleDrive;
+    use bowknot_scene::world::Pin;
+    use bowknot_scene::{Keyframe, Motion};
+
+    /// A change of each kind but for the scene.
+    fn driven() -> Driven {
+        let keyframe = Keyframe { time: 0.1, translate: Vector::new(1.0 / 3.0, 0.0, -0.0), angle: 5e-324 };
+        let motion = Motion { keyframes: vec![keyframe], ..Motion::default() };
+        let places = vec![Point::new(0.1, 1e-300, 1.0 / 3.0)];
+        let drives = [ObstacleDrive::Places(places.clone()), ObstacleDrive::Motion(motion)];
+        let names = ["a finger", "\"b\""].map(str::to_owned);
+        let pin = |end: f64| Pin {
+            name: "hand".to_owned(),
+            vertices: vec![3, 1],
+            motion: None,
+            follow: None,
+            start: 0.25,
+            end,
+        };
+        Driven {
+            scene: None,
+            pins: Some(vec![pin(0.5), pin(f64::INFINITY)]),
+            grips: [("hand".to_owned(), places)].into(),
+            obstacles: names.into_iter().zip(drives).collect(),
+            gravity: Some(Vector::new(0.1, 0.2, -1e300)),
+            wind: Some(Vector::x()),
+            external_forces: vec![Vector::zeros(), Vector::new(1.0 / 3.0, 0.0, 5e-324)],
+            pushed: vec![true, false],
+        }
+    }
 
     #[test]
     fn a_checkpoint_survives_its_file_to_the_bit() {
@@ -390,13 +420,15 @@ mod tests {
                 islands: vec![SleepState::AWAKE, 1],
             },
             order: vec![Point::new(0.5, -0.0, 1.0 / 3.0)],
+            driven: driven(),
         };
         checkpoint.write(&path).expect("write");
         let read = Checkpoint::read(&path).expect("read");
         assert_eq!(read, checkpoint);
         assert!(read.positions[0].y.is_sign_negative());
-        // Runs in which nothing may sleep write nothing about sleep.
-        let checkpoint = Checkpoint { sleep: SleepState::default(), order: Vec::new(), ..checkpoint };
+        // Runs in which nothing may sleep write nothing about sleep, and those that nobody drives nothing of that.
+        let (sleep, driven) = (SleepState::default(), Driven::default());
+        let checkpoint = Checkpoint { sleep, driven, order: Vec::new(), ..checkpoint };
         checkpoint.write(&path).expect("write");
         assert_eq!(Checkpoint::read(&path).expect("read"), checkpoint);
     }

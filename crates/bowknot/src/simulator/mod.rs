@@ -158,7 +158,8 @@ impl Simulator {
         Ok(simulator)
     }
 
-    /// The first pairs that intersect in the present state, in words, and how many do in all; none if none does.
+    /// The first pairs that intersect in the present state, in words, and how many do in all; none if none
+    /// does.
     fn intersections(&self) -> Result<Option<(Vec<String>, usize)>, CheckError> {
         let options = StateOptions { limit: NAMED_PAIRS, distance: false };
         let positions = &self.positions[..self.world.collision_vertices()];
@@ -186,8 +187,8 @@ impl Simulator {
         if self.step == 0 { start::near_starts(&self.world, &self.resolver) } else { Vec::new() }
     }
 
-    /// A simulator at the start of its world, whatever intersects there. The `scene` is that of the world, None for
-    /// the one that the simulation began with.
+    /// A simulator at the start of its world, whatever intersects there. `changed` is the scene of the world
+    /// if that is not the one that the simulation began with.
     fn at_start(world: Arc<World>, home: Home, changed: Option<Box<Scene>>) -> Result<Self, SimulationError> {
         let scene = changed.as_deref().unwrap_or(&home.scene);
         let model = world.dynamics_model()?;

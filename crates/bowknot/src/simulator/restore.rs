@@ -25,8 +25,8 @@ impl Simulator {
     /// Goes on from a state of the same scene, with what a program had changed then and without what it has
     /// changed since.
     ///
-    /// **The state must be free of intersections**, as that of every checkpoint is. One that is not stays so, or
-    /// worse: [`Self::restore_checked`] looks.
+    /// **The state must be free of intersections**, as that of every checkpoint is. One that is not stays so,
+    /// or worse: [`Self::restore_checked`] looks.
     ///
     /// # Errors
     /// What does not fit; the simulator is then as it was.

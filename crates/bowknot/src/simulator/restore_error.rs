@@ -33,7 +33,7 @@ pub enum RestoreError {
     #[error("what was changed by code: {0}")]
     Driven(#[from] DriveError),
     /// The state intersects.
-    #[error("its state intersects: {} ({count} in all); take a checkpoint of a simulation", .lines.join("; "))]
+    #[error("its state intersects: {} ({count} in all); take one of a simulation", .lines.join("; "))]
     Intersects {
         /// The first intersecting pairs, in words.
         lines: Vec<String>,

@@ -1,5 +1,5 @@
-//! Simulations driven by code: pins, obstacles, forces and bodies between time steps, contact forces, and that
-//! checkpoints hold all of it.
+//! Simulations driven by code: pins, obstacles, forces and bodies between time steps, contact forces, and
+//! that checkpoints hold all of it.
 
 use bowknot::geometry::nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use bowknot::geometry::{Point, Vector};
@@ -95,6 +95,16 @@ fn change_much(simulator: &mut Simulator) {
     forces[10] = Vector::new(0.0, 0.01, 0.0);
     simulator.set_external_forces(&forces).expect("one per vertex");
     simulator.set_velocities("block", &vec![Vector::new(0.0, 0.0, 0.2); 27]).expect("one per vertex");
+}
+
+/// Bindings move simulators between threads.
+#[test]
+fn a_simulator_may_go_to_another_thread() {
+    let mut simulator = simulator();
+    std::thread::spawn(move || simulator.step().map(|statistics| statistics.step))
+        .join()
+        .expect("no panic")
+        .expect("a step");
 }
 
 #[test]
@@ -306,7 +316,11 @@ fn bodies_come_and_go() {
     assert!(is_clear(&simulator));
 
     // The state of the changed scene, in a simulator of the scene that it began with.
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("state.npz");
     let middle = simulator.checkpoint();
+    middle.write(&file).expect("write");
+    assert_eq!(Checkpoint::read(&file).expect("read"), middle);
     run(&mut simulator, 3);
     let mut resumed = self::simulator();
     resumed.restore_checked(&middle).expect("a checkpoint");
@@ -318,6 +332,27 @@ fn bodies_come_and_go() {
     run(&mut resumed, 5);
     run(&mut fresh, 5);
     assert_eq!(bits(&resumed), bits(&fresh));
+}
+
+/// What has the name of something that was removed is not that.
+#[test]
+fn what_is_removed_and_added_anew_is_where_its_spec_says() {
+    let text = format!("{BLOCK_AND_SHEET}[[pin]]\nbody = \"sheet\"\nvertices = [35]\nfollow = \"ball\"\n");
+    let mut simulator = Simulator::new(&super::scene(&text)).expect("a simulator");
+    let error = simulator.remove("ball").expect_err("a pin follows it").to_string();
+    assert!(error.contains("pin[1] of sheet"), "{error}");
+    simulator.remove_pin("pin[1] of sheet").expect("a pin");
+    simulator.remove("ball").expect("an obstacle");
+    let ball = scene().obstacles[1].clone();
+    simulator.add_obstacle(ObstacleSpec { translate: Vector::new(0.5, 0.0, 0.0), ..ball }).expect("clear");
+    let at = Vector::new(0.5, 0.0, 0.0);
+    assert!((center(&of(&simulator, "ball")) - at).norm() < 1e-9);
+    let mut resumed = Simulator::new(&super::scene(&text)).expect("a simulator");
+    resumed.restore(&simulator.checkpoint()).expect("a checkpoint");
+    run(&mut simulator, 2);
+    run(&mut resumed, 2);
+    assert!((center(&of(&resumed, "ball")) - at).norm() < 1e-9);
+    assert_eq!(bits(&resumed), bits(&simulator));
 }
 
 #[test]

@@ -10,8 +10,8 @@ use bowknot_scene::world::Pin;
 use std::sync::Arc;
 
 impl Simulator {
-    /// Whether changes name what there is, and have as many entries as that has vertices. They may be those of a
-    /// damaged file.
+    /// Whether changes name what there is, and have as many entries as that has vertices. They may be those
+    /// of a damaged file.
     pub(crate) fn check_driven(&self, driven: &Driven) -> Result<(), DriveError> {
         for pin in driven.pins.iter().flatten() {
             self.check_pin(pin)?;

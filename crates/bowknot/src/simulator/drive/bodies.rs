@@ -7,24 +7,26 @@ use bowknot_scene::world::Pin;
 use bowknot_scene::{BodySpec, Material, ObstacleSpec};
 
 impl Simulator {
-    /// Adds a deformable body, where its `spec` puts it and with the velocity that it states. It is there from the
-    /// next time step on.
+    /// Adds a deformable body, where its `spec` puts it and with the velocity that it states. It is there
+    /// from the next time step on.
     ///
-    /// As all of this file, it sets the simulation up anew, which takes as long as [`Simulator::new`], and wakes
-    /// all bodies. The other bodies keep their state; they go on to the same solution, but not to the same bits,
-    /// as the systems of equations are larger. Lengths that the scene leaves to its meshes (`contact.delta` and
-    /// others) stay as they are.
+    /// This sets the simulation up anew, which takes as long as [`Simulator::new`], and wakes all bodies. The
+    /// other bodies keep their state; they go on to the same solution, but not to the same bits, as the
+    /// systems of equations and the tolerance of the time step are other ones. Lengths that the scene leaves
+    /// to its meshes (`contact.delta` and others) stay as they are.
     ///
     /// # Errors
     /// A name that is taken, a spec or a mesh that is refused, [`DriveError::Intersects`] with the pairs. The
-    /// simulator is then as it was.
+    /// simulator is then as it was. Nobody looks whether the body is inside of a closed surface, which it
+    /// could never leave.
     pub fn add_body(&mut self, spec: BodySpec) -> Result<(), SimulationError> {
         let name = self.new_name(&spec.name)?;
         self.change_scene(Some(&name), |scene| scene.bodies.push(spec))
     }
 
-    /// Adds an obstacle or a half-space, where its `spec` puts it, or where its motion has it at this time. It is
-    /// there from the next time step on, or when it `appears`. See [`Self::add_body`] for what this costs.
+    /// Adds an obstacle or a half-space, where its `spec` puts it, or where its motion has it at this time.
+    /// It is there from the next time step on, or when it `appears`. See [`Self::add_body`] for what this
+    /// costs.
     ///
     /// # Errors
     /// As [`Self::add_body`].
@@ -33,8 +35,8 @@ impl Simulator {
         self.change_scene(Some(&name), |scene| scene.obstacles.push(spec))
     }
 
-    /// Removes a body, an obstacle or a half-space, with the pins of a body. See [`Self::add_body`] for what this
-    /// costs.
+    /// Removes a body, an obstacle or a half-space, with the pins of a body. See [`Self::add_body`] for what
+    /// this costs.
     ///
     /// # Errors
     /// No such body or obstacle, pins that follow the obstacle, the last body of the scene.
@@ -51,8 +53,8 @@ impl Simulator {
         })
     }
 
-    /// Gives a body another material of its kind: stiffness, density, damping and the rest. Its rest shape stays.
-    /// See [`Self::add_body`] for what this costs.
+    /// Gives a body another material of its kind: stiffness, density, damping and the rest. Its rest shape
+    /// stays. See [`Self::add_body`] for what this costs.
     ///
     /// # Errors
     /// No such body, a material of another kind, numbers out of their range.
@@ -64,8 +66,8 @@ impl Simulator {
         })
     }
 
-    /// Sets the coefficient of Coulomb friction of a body, an obstacle or a half-space [1]; two in contact have
-    /// the geometric mean of both. See [`Self::add_body`] for what this costs.
+    /// Sets the coefficient of Coulomb friction of a body, an obstacle or a half-space [1]; two in contact
+    /// have the geometric mean of both. See [`Self::add_body`] for what this costs.
     ///
     /// # Errors
     /// No such body or obstacle, a coefficient below 0 or not finite.

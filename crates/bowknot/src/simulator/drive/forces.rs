@@ -7,18 +7,18 @@ use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::ContactSide;
 
 impl Simulator {
-    /// The contacts that carried a force at the end of the last time step, those of bodies asleep included. Also
-    /// after a checkpoint was restored.
+    /// The contacts that carried a force at the end of the last time step, those of bodies asleep included.
+    /// Also after a checkpoint was restored.
     ///
-    /// The list is made anew for each call. Where contacts have no springs (`solver.repulsion.stiffness = 0`, or
-    /// friction by the velocity filter) it holds those of grains with obstacles and with each other only.
+    /// The list is made anew for each call. Where contacts have no springs (`solver.repulsion.stiffness = 0`,
+    /// or friction by the velocity filter) it holds those of grains with obstacles and with each other only.
     pub fn contacts(&self) -> Vec<Contact> {
         let carried = self.carried();
         carried.forces.iter().filter_map(|force| Contact::new(&self.world, &self.positions, force)).collect()
     }
 
-    /// What all [contacts](Self::contacts) exert on a body, an obstacle or a half-space, with the torque about a
-    /// point: the load on a finger of a robot.
+    /// What all [contacts](Self::contacts) exert on a body, an obstacle or a half-space, with the torque
+    /// about a point: the load on a finger of a robot.
     ///
     /// # Errors
     /// No such body or obstacle.
@@ -38,9 +38,9 @@ impl Simulator {
         Ok(Wrench::about(about, forces))
     }
 
-    /// The force that a pin exerted on each of its vertices in the last time step, in its order [N]; empty if it has
-    /// held in none since it was added or a checkpoint was restored, and while a backend computes the dynamics. Of
-    /// a body asleep they are those with which it fell asleep.
+    /// The force that a pin exerted on each of its vertices in the last time step, in its order [N]; empty if
+    /// it has held in none since it was added, bodies have come or gone, or a checkpoint was restored, and
+    /// while a backend computes the dynamics. Of a body asleep they are those with which it fell asleep.
     ///
     /// # Errors
     /// No such pin.
@@ -49,8 +49,8 @@ impl Simulator {
         Ok(self.pin_forces.get(index).map_or(&[], Vec::as_slice))
     }
 
-    /// What a pin exerted on its body in the last time step, with the torque about a point. What the body exerts on
-    /// the hand that holds it is opposite. As [`Self::pin_forces`] otherwise.
+    /// What a pin exerted on its body in the last time step, with the torque about a point. What the body
+    /// exerts on the hand that holds it is opposite. As [`Self::pin_forces`] otherwise.
     ///
     /// # Errors
     /// No such pin.

@@ -11,9 +11,9 @@ use bowknot_scene::Motion;
 use std::sync::Arc;
 
 impl Simulator {
-    /// Leads an obstacle as a rigid body, such as a finger of a robot: to where the `pose` takes it from its place
-    /// in the scene, at the end of the next time step. It stays there until it is led elsewhere. This replaces the
-    /// motion that the scene has for it.
+    /// Leads an obstacle as a rigid body, such as a finger of a robot: to where the `pose` takes it from its
+    /// place in the scene, at the end of the next time step. It stays there until it is led elsewhere. This
+    /// replaces the motion that the scene has for it.
     ///
     /// All of its vertices move on straight lines, so a turn of more than some tens of degrees in a time step
     /// shrinks it on the way.
@@ -27,9 +27,9 @@ impl Simulator {
         self.drive_obstacle(name, ObstacleDrive::Places(places))
     }
 
-    /// Leads the vertices of an obstacle to `targets` at the end of the next time step [m]: one per vertex of its
-    /// mesh, in that order. They stay there until they are led elsewhere. This replaces the motion that the scene
-    /// has for the obstacle.
+    /// Leads the vertices of an obstacle to `targets` at the end of the next time step [m]: one per vertex of
+    /// its mesh, in that order. They stay there until they are led elsewhere. This replaces the motion that
+    /// the scene has for the obstacle.
     ///
     /// # Errors
     /// No such obstacle, or a half-space; another number of targets, one that is not finite.
@@ -44,8 +44,8 @@ impl Simulator {
         self.drive_obstacle(name, ObstacleDrive::Places(places))
     }
 
-    /// Gives an obstacle a motion by keyframes and spin, over the time of the simulation, from the next time step
-    /// on. It displaces the obstacle from its place in the scene. This replaces the motion that it had.
+    /// Gives an obstacle a motion by keyframes and spin, over the time of the simulation, from the next time
+    /// step on. It displaces the obstacle from its place in the scene. This replaces the motion that it had.
     ///
     /// # Errors
     /// No such obstacle, or a half-space; keyframes that do not ascend, or numbers that are not finite.

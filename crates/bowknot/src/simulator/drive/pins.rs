@@ -9,12 +9,12 @@ use bowknot_scene::world::{Pin, World};
 use std::sync::Arc;
 
 impl Simulator {
-    /// Adds a pin of a `name` that holds `vertices` of a `body` where they are, until it is led or removed. The
-    /// vertices are numbered as in the body's mesh, from 0; targets have their order.
+    /// Adds a pin of a `name` that holds `vertices` of a `body` where they are, until it is led or removed.
+    /// The vertices are numbered as in the body's mesh, from 0; targets have their order.
     ///
     /// # Errors
-    /// A name that a pin has already, no such body, vertices that the body does not have or that a pin holds, none
-    /// at all.
+    /// A name that a pin has already, no such body, vertices that the body does not have or that a pin holds,
+    /// none at all.
     pub fn add_pin(&mut self, name: &str, body: &str, vertices: &[u32]) -> Result<(), DriveError> {
         let index = self.deformable(body)?;
         if self.world.pins.iter().any(|pin| pin.name == name) {
@@ -68,23 +68,20 @@ impl Simulator {
         Ok(())
     }
 
-    /// Leads the vertices of a pin to `targets` at the end of the next time step, and holds them there [m]; one
-    /// target per vertex of the pin, in its order. It replaces the motion that the scene has for it, and what it
-    /// follows. The vertices go as one: each makes the same fraction of its way.
+    /// Leads the vertices of a pin to `targets` at the end of the next time step, and holds them there [m];
+    /// one target per vertex of the pin, in its order. It replaces the motion that the scene has for it, and
+    /// what it follows. The vertices go as one: each makes the same fraction of its way.
     ///
     /// # Errors
     /// No such pin, another number of targets, one that is not finite.
     pub fn set_pin_targets(&mut self, name: &str, targets: &[Point]) -> Result<(), DriveError> {
         let index = self.pin(name)?;
-        let vertices = self.world.pins[index].vertices.clone();
-        check("targets", name, vertices.len(), targets.iter().map(|x| &x.coords))?;
-        let here = || vertices.iter().map(|&v| self.positions[v as usize]).collect();
-        if !self.driven.grips.contains_key(name) {
-            let grip = here();
-            self.driven.grips.insert(name.to_owned(), grip);
-        }
         let pin = &self.world.pins[index];
-        if pin.motion.is_some() || pin.follow.is_some() || self.driven.pins.is_none() {
+        check("targets", name, pin.vertices.len(), targets.iter().map(|x| &x.coords))?;
+        if !self.driven.grips.contains_key(name) {
+            self.driven.grips.insert(name.to_owned(), self.places_of(index));
+        }
+        if pin.motion.is_some() || pin.follow.is_some() {
             self.change_pins(|world| (world.pins[index].motion, world.pins[index].follow) = (None, None));
         }
         self.anchors[index] = targets.to_vec();
@@ -98,13 +95,14 @@ impl Simulator {
     /// As [`Self::set_pin_targets`].
     pub fn set_pin_pose(&mut self, name: &str, pose: &Isometry3<f64>) -> Result<(), DriveError> {
         let index = self.pin(name)?;
-        let here = || {
-            let vertices = &self.world.pins[index].vertices;
-            vertices.iter().map(|&v| self.positions[v as usize]).collect()
-        };
-        let grip = self.driven.grips.get(name).cloned().unwrap_or_else(here);
+        let grip = self.driven.grips.get(name).cloned().unwrap_or_else(|| self.places_of(index));
         let targets: Vec<Point> = grip.iter().map(|x| pose * x).collect();
         self.set_pin_targets(name, &targets)
+    }
+
+    /// Where the vertices of a pin are [m].
+    fn places_of(&self, pin: usize) -> Vec<Point> {
+        self.world.pins[pin].vertices.iter().map(|&v| self.positions[v as usize]).collect()
     }
 
     /// Changes the pins of the world, of which this simulator then has its own.

@@ -6,7 +6,7 @@ use crate::simulator::Simulator;
 use crate::simulator::error::SimulationError;
 use bowknot_dynamics::StepError;
 use bowknot_scene::world::World;
-use bowknot_scene::{BodySpec, Scene, SceneError};
+use bowknot_scene::{BodySpec, Material, ObstacleSpec, Scene, SceneError};
 use std::sync::Arc;
 
 impl Simulator {
@@ -38,8 +38,8 @@ impl Simulator {
         self.give_way_to(next)
     }
 
-    /// A simulator at the start of a scene, None for that which this one began with. Bodies that both scenes have
-    /// keep their rest shapes.
+    /// A simulator at the start of a scene, None for that which this one began with. Bodies that both scenes
+    /// have keep their rest shapes.
     pub(crate) fn rebuilt(&self, scene: Option<Box<Scene>>) -> Result<Self, SimulationError> {
         let world = match &scene {
             None => Arc::clone(&self.home.world),
@@ -84,39 +84,34 @@ impl Simulator {
     }
 }
 
-/// The world of a changed scene. Bodies that are as in the scene `before` but for their materials keep the rest
-/// shapes that they have in its world: files may have changed, and a program may have made that world.
+/// The world of a changed scene. Bodies that are as in the scene `before` but for their materials keep the
+/// rest shapes that they have in its world: files may have changed, and a program may have made that world.
 fn world_of(scene: &Scene, before: &Scene, world_before: &World) -> Result<World, SceneError> {
     let mut world = World::new(scene)?;
-    let is_same = |name: &str| {
-        let of = |scene: &Scene| scene.bodies.iter().find(|spec| spec.name == name).cloned();
-        let plain = |spec: BodySpec| BodySpec { friction: 0.0, material: Default::default(), ..spec };
-        match (of(scene), of(before)) {
-            (Some(now), Some(then)) => plain(now) == plain(then),
-            (None, None) => {
-                scene.obstacles.iter().find(|o| o.name == name).map(|o| (&o.mesh, &o.shape))
-                    == before.obstacles.iter().find(|o| o.name == name).map(|o| (&o.mesh, &o.shape))
-            }
-            _ => false,
+    for now in world.bodies.iter().filter(|now| is_same(&now.name, [scene, before])) {
+        let Some(then) = world_before.bodies.iter().find(|then| then.name == now.name) else { continue };
+        if (now.vertices.len(), now.interior.len()) != (then.vertices.len(), then.interior.len()) {
+            return Err(SceneError::Model(format!("the mesh of {} has changed since the start", now.name)));
         }
-    };
-    for body in &world.bodies {
-        let Some(then) =
-            world_before.bodies.iter().find(|then| then.name == body.name && is_same(&body.name))
-        else {
-            continue;
-        };
-        for (now, then) in [(&body.vertices, &then.vertices), (&body.interior, &then.interior)] {
-            let range = |range: &std::ops::Range<u32>| range.start as usize..range.end as usize;
-            if now.len() != then.len() {
-                let message = format!("the mesh of {} has changed", body.name);
-                return Err(SceneError::Model(message));
-            }
-            world.positions[range(now)].copy_from_slice(&world_before.positions[range(then)]);
-            if range(now).end <= world.base.len() {
-                world.base[range(now)].copy_from_slice(&world_before.base[range(then)]);
+        for (v, w) in now.all_vertices().zip(then.all_vertices()).map(|(v, w)| (v as usize, w as usize)) {
+            world.positions[v] = world_before.positions[w];
+            if let (Some(base), Some(before)) = (world.base.get_mut(v), world_before.base.get(w)) {
+                *base = *before;
             }
         }
     }
     Ok(world)
+}
+
+/// Whether what has a name is the same in both scenes, but for its material and friction.
+fn is_same(name: &str, scenes: [&Scene; 2]) -> bool {
+    let bodies = scenes.map(|scene| {
+        let body = scene.bodies.iter().find(|body| body.name == name).cloned();
+        body.map(|body| BodySpec { material: Material::default(), friction: 0.0, ..body })
+    });
+    let obstacles = scenes.map(|scene| {
+        let obstacle = scene.obstacles.iter().find(|obstacle| obstacle.name == name).cloned();
+        obstacle.map(|obstacle| ObstacleSpec { friction: 0.0, ..obstacle })
+    });
+    bodies[0] == bodies[1] && obstacles[0] == obstacles[1]
 }

@@ -10,8 +10,8 @@ use bowknot_scene::world::{Pin, World};
 use bowknot_twoway::lcp::DistanceLimit;
 use rustc_hash::FxHashMap;
 
-/// The state of a simulator as one of the `next`, which is at its start. Bodies of one name are the same body.
-/// All bodies are awake.
+/// The state of a simulator as one of the `next`, which is at its start. Bodies of one name are the same
+/// body. All bodies are awake.
 pub(super) fn renumbered(simulator: &Simulator, next: &Simulator) -> Checkpoint {
     let Simulator { world: old, .. } = simulator;
     let numbers = Numbers::new(old, &next.world);

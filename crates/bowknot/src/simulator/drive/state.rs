@@ -11,8 +11,8 @@ use bowknot_geometry::{Point, Vector};
 use std::sync::Arc;
 
 impl Simulator {
-    /// Sets the velocities of a deformable body [m/s]: one per vertex of its mesh, in that order. Those of pinned
-    /// vertices have no effect but on the drag of air. Wakes the body.
+    /// Sets the velocities of a deformable body [m/s]: one per vertex of its mesh, in that order. Those of
+    /// pinned vertices have no effect but on the drag of air. Wakes the body.
     ///
     /// # Errors
     /// No such body, another number of velocities, one that is not finite.
@@ -25,16 +25,16 @@ impl Simulator {
         Ok(())
     }
 
-    /// Puts a body or an obstacle somewhere else at once [m]: one position per vertex of its mesh, in that order.
-    /// The exact judge looks at the new state, and nothing changes if it intersects; what is between the places is
-    /// not looked at. To move something *through* a scene, lead a pin or an obstacle.
+    /// Puts a body or an obstacle somewhere else at once [m]: one position per vertex of its mesh, in that
+    /// order. The exact judge looks at the new state, and nothing changes if it intersects; what is between
+    /// the places is not looked at. To move something *through* a scene, lead a pin or an obstacle.
     ///
-    /// Velocities stay, pins keep their targets, an obstacle stays at its new place. Contacts of what is placed
-    /// are forgotten, and all bodies wake.
+    /// Velocities stay, pins keep their targets, an obstacle stays at its new place. Contacts of what is
+    /// placed are forgotten, and all bodies wake.
     ///
     /// # Errors
-    /// No such body, or a half-space; another number of positions, one that is not finite or too large for the
-    /// minimum separation; [`DriveError::Intersects`] with the pairs.
+    /// No such body, or a half-space; another number of positions, one that is not finite or too large for
+    /// the minimum separation; [`DriveError::Intersects`] with the pairs.
     pub fn place(&mut self, name: &str, positions: &[Point]) -> Result<(), SimulationError> {
         let index = self.index_of(name)?;
         let count = self.world.bodies[index].mesh_order().len();

@@ -8,8 +8,8 @@ use bowknot_dynamics::{Dynamics, Errors, ParamError, StepError};
 use bowknot_geometry::Vector;
 
 impl Simulator {
-    /// Sets the gravity [m/s^2], [`bowknot_dynamics::Environment::gravity`] at first, from the next time step on.
-    /// Bodies with a gravity of their own keep it. Wakes all bodies.
+    /// Sets the gravity [m/s^2], [`bowknot_dynamics::Environment::gravity`] at first, from the next time step
+    /// on. Bodies with a gravity of their own keep it. Wakes all bodies.
     ///
     /// # Errors
     /// A component that is not finite.

@@ -15,8 +15,8 @@ pub struct Contact {
     /// The vertices of both sides, those of the first side first; if there are fewer than four, the first one
     /// again.
     pub vertices: [u32; 4],
-    /// Weights of the closest points in the vertices [1]: positive and with a sum of 1 on the first side, negative
-    /// on the second; 0 where there is no further vertex.
+    /// Weights of the closest points in the vertices [1]: positive and with a sum of 1 on the first side,
+    /// negative on the second; 0 where there is no further vertex.
     pub weights: [f64; 4],
     /// The closest points of the two sides [m].
     pub points: [Point; 2],
