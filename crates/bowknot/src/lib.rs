@@ -66,3 +66,8 @@ pub use bowknot_twoway as twoway;
 pub use scene::{BUILTIN, Scene, SceneError};
 pub use simulator::{DriveError, SimulationError, SimulationObserver, Simulator, StepStatistics};
 pub use world::{SceneInfo, World};
+
+/// The README's examples are tested with the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

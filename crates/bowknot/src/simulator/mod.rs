@@ -152,10 +152,15 @@ impl Simulator {
             let advice = start::advice(&simulator.world, &all.intersections);
             return Err(SimulationError::StartIntersects { lines, count, advice });
         }
-        let enclosed = start::enclosed_bodies(&simulator.world, &simulator.present);
-        enclosed.iter().for_each(|body| tracing::warn!("{body}"));
+        simulator.warn_of_enclosed();
         simulator.find_contacts(CarriedContacts::default())?;
         Ok(simulator)
+    }
+
+    /// Warns of bodies that cannot leave what they are inside of, where they start or are put.
+    fn warn_of_enclosed(&self) {
+        let enclosed = start::enclosed_bodies(&self.world, &self.positions, &self.present);
+        enclosed.iter().for_each(|body| tracing::warn!("{body}"));
     }
 
     /// The first pairs that intersect in the present state, in words, and how many do in all; none if none

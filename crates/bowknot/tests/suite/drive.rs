@@ -1,12 +1,14 @@
 //! Simulations driven by code: pins, obstacles, forces and bodies between time steps, contact forces, and
 //! that checkpoints hold all of it.
 
+use bowknot::check::{Judge, PathOptions, StateOptions};
 use bowknot::geometry::nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use bowknot::geometry::{Point, Vector};
 use bowknot::scene::{BodySpec, Keyframe, Material, Motion, ObstacleSpec};
 use bowknot::shapes::{HalfSpaceShape, MeshArrays, Shape};
-use bowknot::simulator::{Checkpoint, DriveError, RestoreError, SimulationError};
-use bowknot::{Scene, Simulator, World};
+use bowknot::simulator::{AcceptedStep, Checkpoint, DriveError, RestoreError, SimulationError};
+use bowknot::{Scene, SimulationObserver, Simulator, World};
+use std::ops::ControlFlow;
 
 const BLOCK_AND_SHEET: &str = r#"
 [simulation]
@@ -450,6 +452,56 @@ fn a_restored_state_is_judged_if_asked() {
         Ok(())
     }
     question_mark(&mut simulator, &sound).expect("sound");
+}
+
+/// Judges each accepted state and path.
+struct Judged {
+    judge: Judge,
+    states: usize,
+}
+
+impl SimulationObserver for Judged {
+    fn accepted(&mut self, accepted: &AcceptedStep<'_>) -> ControlFlow<()> {
+        let x = accepted.state.positions;
+        let path = self.judge.check_path(accepted.state.previous, x, &PathOptions::default());
+        let state = self.judge.check_state(x, &StateOptions { distance: false, ..StateOptions::default() });
+        assert!(path.expect("judged").is_clear() && state.expect("judged").is_clear());
+        self.states += 1;
+        ControlFlow::Continue(())
+    }
+}
+
+#[test]
+fn whatever_code_asks_for_nothing_intersects() {
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut simulator = simulator();
+    let mut judged = Judged { judge: simulator.judge(), states: 0 };
+    for step in 0..60 {
+        let mut vector = |size: f64| Vector::from([0; 3].map(|_| size * (2.0 * random.f64() - 1.0)));
+        // Far jumps, through whatever is there and into the ground.
+        let turn = UnitQuaternion::from_scaled_axis(vector(1.0));
+        let pose = Isometry3::from_parts(Translation3::from(vector(0.3) - Vector::x() * 0.2), turn);
+        simulator.set_obstacle_pose("ball", &pose).expect("finite");
+        if step % 5 == 0 {
+            let throw = vector(3.0);
+            simulator.set_velocities("block", &vec![throw; 27]).expect("one per vertex");
+            simulator.set_gravity(vector(20.0)).expect("finite");
+        }
+        match step % 12 {
+            3 => simulator.add_pin("hand", "block", &[0, 13, 26]).expect("free vertices"),
+            9 => simulator.remove_pin("hand").expect("a pin"),
+            _ => {}
+        }
+        if (3..9).contains(&(step % 12)) {
+            let targets = [0; 3].map(|_| Point::from(vector(0.2)));
+            simulator.set_pin_targets("hand", &targets).expect("three targets");
+        }
+        let way = Translation3::from(vector(0.1)).into();
+        simulator.set_pin_pose("pin[0] of sheet", &way).expect("a pin");
+        simulator.step_observed(&mut judged).unwrap_or_else(|error| panic!("{error}"));
+        assert!(is_clear(&simulator), "time step {step}");
+    }
+    assert!(judged.states > 100, "{} states", judged.states);
 }
 
 /// A name that no obstacle has.

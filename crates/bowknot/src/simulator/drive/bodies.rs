@@ -17,8 +17,8 @@ impl Simulator {
     ///
     /// # Errors
     /// A name that is taken, a spec or a mesh that is refused, [`DriveError::Intersects`] with the pairs. The
-    /// simulator is then as it was. Nobody looks whether the body is inside of a closed surface, which it
-    /// could never leave.
+    /// simulator is then as it was. A body inside of a closed obstacle, which it can never leave, causes a
+    /// warning.
     pub fn add_body(&mut self, spec: BodySpec) -> Result<(), SimulationError> {
         let name = self.new_name(&spec.name)?;
         self.change_scene(Some(&name), |scene| scene.bodies.push(spec))

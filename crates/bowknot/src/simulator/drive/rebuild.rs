@@ -73,10 +73,13 @@ impl Simulator {
         Ok(())
     }
 
-    /// Refuses a state in which something `placed` intersects, or anything else.
+    /// Refuses a state in which something `placed` intersects, or anything else. Warns of what is enclosed.
     pub(super) fn refuse_intersections(&self, placed: &str) -> Result<(), SimulationError> {
         match self.intersections()? {
-            None => Ok(()),
+            None => {
+                self.warn_of_enclosed();
+                Ok(())
+            }
             Some((lines, count)) => {
                 Err(DriveError::Intersects { what: placed.to_owned(), lines, count }.into())
             }

@@ -50,14 +50,14 @@ impl<'a> Enclosure<'a> {
     }
 }
 
-/// Deformable bodies that start inside of a closed obstacle that is `present`, which they can never leave, in
-/// words.
-pub(crate) fn enclosed_bodies(world: &World, present: &[bool]) -> Vec<String> {
+/// Deformable bodies that are inside of a closed obstacle that is `present`, which they can never leave, in
+/// words. `positions` are those of all vertices [m].
+pub(crate) fn enclosed_bodies(world: &World, positions: &[Point], present: &[bool]) -> Vec<String> {
     let is_obstacle = |body: &WorldBody| body.kind.is_none();
     let obstacles = world.bodies.iter().zip(present).enumerate();
     let mut found = Vec::new();
     for (o, (obstacle, _)) in obstacles.filter(|(_, (body, present))| is_obstacle(body) && **present) {
-        let Some(enclosure) = Enclosure::new(world, &world.positions, o) else { continue };
+        let Some(enclosure) = Enclosure::new(world, positions, o) else { continue };
         for (b, body) in world.bodies.iter().enumerate().filter(|(_, body)| !is_obstacle(body)) {
             if world.collision.may_collide(b as u32, o as u32) && enclosure.holds(b) {
                 found.push(format!(
@@ -101,18 +101,23 @@ mod tests {
             );
             World::new(&Scene::from_toml(&text, "").expect("a scene")).expect("a world")
         };
-        let found = enclosed_bodies(&world(0.0), &[true; 2]);
+        let enclosed = |x: f64, present: &[bool]| {
+            let world = world(x);
+            enclosed_bodies(&world, &world.positions, present)
+        };
+        let found = enclosed(0.0, &[true; 2]);
         assert!(
             found.len() == 1 && found[0].starts_with("sheet starts inside of obstacle ball"),
             "{found:?}"
         );
-        assert_eq!(enclosed_bodies(&world(0.0), &[true, false]), [""; 0]);
-        assert_eq!(enclosed_bodies(&world(0.5), &[true; 2]), [""; 0]);
+        assert_eq!(enclosed(0.0, &[true, false]), [""; 0]);
+        assert_eq!(enclosed(0.5, &[true; 2]), [""; 0]);
     }
 
     #[test]
     fn garments_around_a_figure_are_not_inside_of_it() {
         let world = World::new(&Scene::builtin("dress", 0.1).expect("a scene")).expect("a world");
-        assert_eq!(enclosed_bodies(&world, &world.present(0.0, 0.01)), [""; 0]);
+        let present = world.present(0.0, 0.01);
+        assert_eq!(enclosed_bodies(&world, &world.positions, &present), [""; 0]);
     }
 }
