@@ -565,7 +565,13 @@ fn what_code_changes_wakes_bodies_asleep() {
         asleep.restore(&state).expect("a checkpoint");
         assert!(asleep.asleep()[block]);
         change(&mut asleep);
+        let changed = asleep.checkpoint();
         run(&mut asleep, 1);
         assert!(!asleep.asleep()[block]);
+        run(&mut asleep, 2);
+        let mut resumed = simulator();
+        resumed.restore(&changed).expect("a checkpoint");
+        run(&mut resumed, 3);
+        assert_eq!(bits(&resumed), bits(&asleep));
     }
 }

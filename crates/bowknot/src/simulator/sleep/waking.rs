@@ -144,7 +144,11 @@ impl Simulator {
         if let Some(awake) = &mut sleeping.awake {
             awake.forces = parted.asleep;
         }
-        for (body, _) in world.bodies.iter().zip(&sleeping.asleep).filter(|(_, asleep)| **asleep) {
+        // A body that is to wake may have been given velocities.
+        let pushed = |body: usize| driven.pushed.get(body) == Some(&true);
+        let rests = |(body, asleep): (usize, &bool)| *asleep && !pushed(body);
+        let rest = sleeping.asleep.iter().enumerate().map(rests);
+        for (body, _) in world.bodies.iter().zip(rest).filter(|(_, rests)| *rests) {
             for range in [&body.vertices, &body.interior] {
                 velocities[range.start as usize..range.end as usize].fill(Vector::zeros());
             }
