@@ -309,8 +309,16 @@ fn bodies_come_and_go() {
         ..ObstacleSpec::default()
     };
     simulator.add_obstacle(wall).expect("a clear place");
+    let mut forces = vec![Vector::zeros(); simulator.positions().len()];
+    let second = simulator.world().bodies[simulator.world().index_of("second").expect("a body")].clone();
+    forces[second.vertices.start as usize] = Vector::new(0.0, 0.0, 0.5);
+    simulator.set_external_forces(&forces).expect("one per vertex");
     simulator.remove("block").expect("a body");
     simulator.remove("ball").expect("an obstacle");
+    let second = simulator.world().bodies[simulator.world().index_of("second").expect("a body")].clone();
+    let forces = simulator.checkpoint().driven.external_forces;
+    assert_eq!(forces[second.vertices.start as usize], Vector::new(0.0, 0.0, 0.5));
+    assert_eq!(forces.len(), simulator.positions().len());
     simulator.set_friction("ground", 0.3).expect("a half-space");
     let names: Vec<_> = simulator.world().names().cloned().collect();
     assert_eq!(names, ["sheet", "second", "ground", "wall"]);

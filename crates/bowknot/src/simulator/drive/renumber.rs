@@ -6,6 +6,8 @@ use crate::simulator::checkpoint::Checkpoint;
 use crate::simulator::contact_forces::{CarriedContacts, ContactForce, ContactMean, vertices_of};
 use crate::simulator::sleep::SleepState;
 use bowknot_constraints::Feature;
+use bowknot_geometry::{Point, Vector};
+use bowknot_scene::Scene;
 use bowknot_scene::world::{Pin, World};
 use bowknot_twoway::lcp::DistanceLimit;
 use rustc_hash::FxHashMap;
@@ -13,61 +15,36 @@ use rustc_hash::FxHashMap;
 /// The state of a simulator as one of the `next`, which is at its start. Bodies of one name are the same
 /// body. All bodies are awake.
 pub(super) fn renumbered(simulator: &Simulator, next: &Simulator) -> Checkpoint {
-    let Simulator { world: old, .. } = simulator;
-    let numbers = Numbers::new(old, &next.world);
-    let (mut positions, mut velocities) = (next.positions.clone(), next.velocities.clone());
-    let mut forces = simulator.driven.external_forces.clone();
-    for body in next.world.bodies.iter().filter(|body| body.kind.is_none()) {
-        let range = body.vertices.start as usize..body.vertices.end as usize;
-        body.motion.positions(&next.world.base[range.clone()], simulator.time(), &mut positions[range]);
-    }
-    if !forces.is_empty() {
-        forces = vec![Default::default(); positions.len()];
-    }
-    for (then, now) in numbers.vertices.iter().enumerate().filter_map(|(then, now)| Some((then, (*now)?))) {
-        positions[now as usize] = simulator.positions[then];
-        velocities[now as usize] = simulator.velocities[then];
-        if let Some(force) = forces.get_mut(now as usize) {
-            *force = simulator.driven.external_forces[then];
-        }
-    }
-    let kept = old
-        .pins
-        .iter()
-        .zip(&simulator.anchors)
-        .filter_map(|(pin, anchors)| Some((numbers.pin(pin)?, anchors.clone())));
-    let (pins, anchors): (Vec<Pin>, Vec<_>) = kept.unzip();
-    let before = &simulator.driven;
-    let has_pin = |name: &String| pins.iter().any(|pin| pin.name == *name);
-    let driven = Driven {
-        scene: next.driven.scene.clone(),
-        grips: before.grips.clone().into_iter().filter(|(name, _)| has_pin(name)).collect(),
-        obstacles: before
-            .obstacles
-            .clone()
-            .into_iter()
-            .filter(|(name, _)| next.world.index_of(name).is_some())
-            .collect(),
-        pins: Some(pins),
-        external_forces: forces,
-        pushed: Vec::new(),
-        ..before.clone()
-    };
-    let presences: FxHashMap<&String, bool> =
-        old.names().zip(&simulator.present).map(|(name, present)| (name, *present)).collect();
-    let wanted = next.world.present(simulator.time(), simulator.dt);
-    let present = next.world.names().zip(wanted);
+    let numbers = Numbers::new(&simulator.world, &next.world);
+    let (time, dt) = (simulator.time(), simulator.dt);
+    let before = simulator.world.names().zip(&simulator.present);
+    let before: FxHashMap<&String, bool> = before.map(|(name, present)| (name, *present)).collect();
+    let present = next.world.names().zip(next.world.present(time, dt));
+    let pins = simulator.world.pins.iter().zip(&simulator.anchors);
+    let pins = pins.filter_map(|(pin, anchors)| Some((numbers.pin(pin)?, anchors.clone())));
+    let (pins, anchors): (Vec<Pin>, Vec<Vec<Point>>) = pins.unzip();
     Checkpoint {
         step: simulator.step,
-        positions,
-        velocities,
+        positions: numbers.of_vertices(&simulator.positions, positions_at(next, time)),
+        velocities: numbers.of_vertices(&simulator.velocities, next.velocities.clone()),
         anchors,
-        present: present.map(|(name, wanted)| presences.get(name).copied().unwrap_or(wanted)).collect(),
+        present: present.map(|(name, wanted)| before.get(name).copied().unwrap_or(wanted)).collect(),
         contacts: numbers.contacts(&simulator.carried()),
         sleep: SleepState::default(),
         order: Vec::new(),
-        driven,
+        driven: numbers.driven(&simulator.driven, next.driven.scene.clone(), pins),
     }
+}
+
+/// The positions that a simulator begins with, with obstacles where their motion has them at a `time` [s].
+fn positions_at(simulator: &Simulator, time: f64) -> Vec<Point> {
+    let Simulator { world, positions, .. } = simulator;
+    let mut positions = positions.clone();
+    for body in world.bodies.iter().filter(|body| body.kind.is_none()) {
+        let range = body.vertices.start as usize..body.vertices.end as usize;
+        body.motion.positions(&world.base[range.clone()], time, &mut positions[range]);
+    }
+    positions
 }
 
 /// Numbers of one world in those of another.
@@ -95,6 +72,25 @@ impl<'a> Numbers<'a> {
             edges: (0..).zip(&topology.edges).map(|(e, edge)| (sorted(*edge), e)).collect(),
             triangles: (0..).zip(&topology.triangles).map(|(t, triangle)| (sorted(*triangle), t)).collect(),
         }
+    }
+
+    /// What `before` has by vertex, and what `new` has for vertices that were not there.
+    fn of_vertices<T: Copy>(&self, before: &[T], mut new: Vec<T>) -> Vec<T> {
+        let kept = self.vertices.iter().zip(before).filter_map(|(now, then)| Some(((*now)?, then)));
+        kept.for_each(|(now, then)| new[now as usize] = *then);
+        new
+    }
+
+    /// What was changed and is still there, with a changed scene and its pins.
+    fn driven(&self, before: &Driven, scene: Option<Box<Scene>>, pins: Vec<Pin>) -> Driven {
+        let mut driven = Driven { scene, pushed: Vec::new(), ..before.clone() };
+        driven.grips.retain(|name, _| pins.iter().any(|pin| pin.name == *name));
+        driven.obstacles.retain(|name, _| self.new.index_of(name).is_some());
+        if !driven.external_forces.is_empty() {
+            let none = vec![Vector::zeros(); self.new.positions.len()];
+            driven.external_forces = self.of_vertices(&before.external_forces, none);
+        }
+        Driven { pins: Some(pins), ..driven }
     }
 
     fn vertex(&self, vertex: u32) -> Option<u32> {
