@@ -6,6 +6,7 @@ use super::filter::Filter;
 use super::svd::any_normal;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2};
+use wide::f64x4;
 
 /// Divisors that are singular values, or sums of them, are at least this large. It limits the curvatures of
 /// triangles crushed to less than a twentieth; forces do not depend on it.
@@ -15,7 +16,8 @@ pub(super) const MIN_SINGULAR_VALUE: f64 = 0.05;
 const ZERO_SINGULAR_VALUE: f64 = 1e-150;
 
 /// F = s1 u1 v1^T + s2 u2 v2^T, with v1 = (c, s) and v2 = (-s, c).
-pub(super) struct Decomposition {
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Decomposition {
     pub s: [f64; 2],
     pub u: [Vector; 2],
     pub v1: [f64; 2],
@@ -84,18 +86,72 @@ fn first_axis(a: f64, d: f64, b: f64) -> [f64; 2] {
     if along >= across { [c, s] } else { [-s, c] }
 }
 
-/// Singular values and vectors of the 3 x 2 matrix with columns `f`; they are finite for any rank.
+/// The same of four matrices.
+#[inline(always)]
+fn first_axes(a: f64x4, d: f64x4, b: f64x4) -> [f64x4; 2] {
+    let (zero, one, two) = (f64x4::splat(0.0), f64x4::splat(1.0), f64x4::splat(2.0));
+    let tau = (d - a) / (two * b);
+    let size = one / (tau.abs() + (one + tau * tau).sqrt());
+    let t = tau.simd_ge(zero).bitselect(size, -size);
+    // Without rotation, where b = 0: t = 0.
+    let t = b.simd_eq(zero).bitselect(zero, t);
+    let c = one / (one + t * t).sqrt();
+    let s = -t * c;
+    let along = c * c * a + two * c * s * b + s * s * d;
+    let across = s * s * a - two * c * s * b + c * c * d;
+    let first = along.simd_ge(across);
+    [first.bitselect(c, -s), first.bitselect(s, c)]
+}
+
+/// A vector of each of four triangles.
+type Wide = [f64x4; 3];
+
+#[inline(always)]
+fn dot(a: &Wide, b: &Wide) -> f64x4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Singular values and vectors of four 3 x 2 matrices with columns `f`; they are finite for any rank. Divisions
+/// and square roots of one would wait for each other; the result for each does not depend on the others.
 #[inline]
-pub(super) fn decompose(f: &[Vector; 2]) -> Decomposition {
-    let [c, s] = first_axis(f[0].norm_squared(), f[1].norm_squared(), f[0].dot(&f[1]));
-    let (w1, w2) = (f[0] * c + f[1] * s, f[1] * c - f[0] * s);
-    let s1 = w1.norm();
-    let u1 = if s1 > ZERO_SINGULAR_VALUE { w1 * (1.0 / s1) } else { Vector::x() };
+pub(super) fn decompose(f: &[[Vector; 2]; 4]) -> [Decomposition; 4] {
+    let column =
+        |of: usize| -> Wide { std::array::from_fn(|row| f64x4::new(std::array::from_fn(|k| f[k][of][row]))) };
+    let (f1, f2) = (column(0), column(1));
+    let [c, s] = first_axes(dot(&f1, &f1), dot(&f2, &f2), dot(&f1, &f2));
+    let w1: Wide = std::array::from_fn(|row| f1[row] * c + f2[row] * s);
+    let w2: Wide = std::array::from_fn(|row| f2[row] * c - f1[row] * s);
+    let s1 = dot(&w1, &w1).sqrt();
+    let inverse = f64x4::splat(1.0) / s1;
+    let u1 = w1.map(|x| x * inverse);
     // The component along w1 that rounding left in w2 is removed, so that u stays orthonormal near rank one.
+    let rest = dot(&u1, &w2);
+    let w: Wide = std::array::from_fn(|row| w2[row] - u1[row] * rest);
+    let s2 = dot(&w, &w).sqrt();
+    let inverse = f64x4::splat(1.0) / s2;
+    let u2 = w.map(|x| x * inverse);
+    let numbers = |wide: &Wide| wide.map(|number| number.to_array());
+    let ([u1, u2, w2], [s1, s2, c, s]) =
+        ([u1, u2, w2].map(|wide| numbers(&wide)), [s1, s2, c, s].map(|wide| wide.to_array()));
+    std::array::from_fn(|k| {
+        let pick = |of: &[[f64; 4]; 3]| Vector::new(of[0][k], of[1][k], of[2][k]);
+        let v1 = [c[k], s[k]];
+        if s1[k] > ZERO_SINGULAR_VALUE && s2[k] > 1e-14 * s1[k] && s2[k] > ZERO_SINGULAR_VALUE {
+            Decomposition { s: [s1[k], s2[k]], u: [pick(&u1), pick(&u2)], v1 }
+        } else {
+            degenerate(s1[k], pick(&u1), pick(&w2), v1)
+        }
+    })
+}
+
+/// The decomposition of a matrix of rank zero or one, or nearly so: any orthonormal vectors.
+#[cold]
+fn degenerate(s1: f64, u1: Vector, w2: Vector, v1: [f64; 2]) -> Decomposition {
+    let u1 = if s1 > ZERO_SINGULAR_VALUE { u1 } else { Vector::x() };
     let w2 = w2 - u1 * u1.dot(&w2);
     let s2 = w2.norm();
     let u2 = if s2 > 1e-14 * s1 && s2 > ZERO_SINGULAR_VALUE { w2 * (1.0 / s2) } else { any_normal(&u1) };
-    Decomposition { s: [s1, s2], u: [u1, u2], v1: [c, s] }
+    Decomposition { s: [s1, s2], u: [u1, u2], v1 }
 }
 
 /// Filtered curvatures in the frames (u1, u2, n) and (v1, v2); increments of F are d_ij along u_i v_j^T.
@@ -185,9 +241,29 @@ pub(super) fn filter_2(matrix: Matrix2<f64>, filter: Filter) -> Matrix2<f64> {
     turn * Matrix2::new(along, 0.0, 0.0, across) * turn.transpose()
 }
 
+/// Whether a symmetric matrix is positive definite: all pivots of an elimination are above 0.
+fn is_positive(matrix: &Matrix4<f64>) -> bool {
+    let mut left = *matrix;
+    for k in 0..4 {
+        let pivot = left[(k, k)];
+        // Also false for NaN.
+        if !(pivot > 0.0) {
+            return false;
+        }
+        let inverse = 1.0 / pivot;
+        for column in k + 1..4 {
+            let factor = left[(column, k)] * inverse;
+            for row in column..4 {
+                left[(row, column)] -= factor * left[(row, k)];
+            }
+        }
+    }
+    true
+}
+
 /// Filters the eigenvalues of a symmetric matrix.
 pub(super) fn filter_4(matrix: Matrix4<f64>, filter: Filter) -> Matrix4<f64> {
-    if matrix.cholesky().is_some() {
+    if is_positive(&matrix) {
         return matrix;
     }
     let mut eigen = matrix.symmetric_eigen();

@@ -224,22 +224,25 @@ impl Element<3> for Triangle {
         self.area * density
     }
 
-    type Frame = ();
+    type Frame = Decomposition;
+
+    fn frames(elements: [&Self; 4], x: &[[Vector; 3]; 4]) -> [Decomposition; 4] {
+        decompose(&std::array::from_fn(|k| deformation(&elements[k].gradients, &x[k])))
+    }
 
     fn linearize_in(
         &self,
-        (): &(),
+        decomposition: &Decomposition,
         x: &[Vector; 3],
         start: Option<Start<'_, 3>>,
         filter: Filter,
     ) -> Linearization<3> {
         let f = self.deformation(x);
-        let decomposition = decompose(&f);
         let mut local = self.elastic(decomposition.s);
         let plane = match start.filter(|_| self.damping > 0.0) {
             Some(start) => {
                 let strain = strain_increment(&f, &self.deformation(start.x));
-                self.damped(&mut local, &decomposition, strain, self.damping * start.rate, filter)
+                self.damped(&mut local, decomposition, strain, self.damping * start.rate, filter)
             }
             None => {
                 local.twist = filter.apply(local.twist);
@@ -250,12 +253,12 @@ impl Element<3> for Triangle {
         };
 
         let curvatures = Curvatures { plane, normal: local.normal };
-        assemble(&self.gradients, self.area, &decomposition, local.energy, local.stress, &curvatures)
+        assemble(&self.gradients, self.area, decomposition, local.energy, local.stress, &curvatures)
     }
 
     fn gradient(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>) -> [Vector; 3] {
         let f = self.deformation(x);
-        let decomposition = decompose(&f);
+        let [decomposition, ..] = decompose(&[f; 4]);
         let [s1, s2] = decomposition.s;
         let trace = self.lambda * (s1 + s2 - 2.0);
         let elastic = |s: f64| 2.0 * self.mu * (s - 1.0) + trace;

@@ -194,18 +194,21 @@ impl Element<3> for WovenTriangle {
         self.area * density
     }
 
-    type Frame = ();
+    type Frame = Decomposition;
+
+    fn frames(elements: [&Self; 4], x: &[[Vector; 3]; 4]) -> [Decomposition; 4] {
+        decompose(&std::array::from_fn(|k| deformation(&elements[k].gradients, &x[k])))
+    }
 
     fn linearize_in(
         &self,
-        (): &(),
+        decomposition: &Decomposition,
         x: &[Vector; 3],
         start: Option<Start<'_, 3>>,
         filter: Filter,
     ) -> Linearization<3> {
         let f = deformation(&self.gradients, x);
-        let decomposition = decompose(&f);
-        let Decomposition { s: [s1, s2], v1: [c, s], .. } = decomposition;
+        let Decomposition { s: [s1, s2], v1: [c, s], .. } = *decomposition;
         let frame = Matrix2::new(c, -s, s, c);
         let strain = Self::strain_in(&frame, [s1, s2]);
         let mut energy = self.weave.density(strain);
@@ -249,12 +252,12 @@ impl Element<3> for WovenTriangle {
             normal += viscous;
         }
         let curvatures = Curvatures { plane: filter_4(plane, filter), normal: filter_2(normal, filter) };
-        assemble(&self.gradients, self.area, &decomposition, energy, stress, &curvatures)
+        assemble(&self.gradients, self.area, decomposition, energy, stress, &curvatures)
     }
 
     fn gradient(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>) -> [Vector; 3] {
         let f = deformation(&self.gradients, x);
-        let decomposition = decompose(&f);
+        let [decomposition, ..] = decompose(&[f; 4]);
         let Decomposition { s, v1: [cosine, sine], .. } = decomposition;
         let frame = Matrix2::new(cosine, -sine, sine, cosine);
         let t = frame.tr_mul(&self.weave.stress(Self::strain_in(&frame, s))) * frame;
