@@ -560,12 +560,12 @@ impl<E: Engine> Collision<E> {
         if !slips_from_here {
             recording.write(b.slip_start, &padded(&slip_start));
         }
-        recording.write(b.factor, &[1.0, MOST_GROWTH]);
+        recording.write(b.coarse_factor, &[1.0, MOST_GROWTH]);
         recording.write(b.control, &[Control::of_new_call()]);
         recording.dispatch(
-            &kernels::BEGIN,
+            &kernels::BEGIN_CALL,
             &[b.positions, b.targets, b.limits, b.aims, b.slip_start, b.swings, b.late, b.vertices],
-            kernels::begin::Params {
+            kernels::begin_call::Params {
                 vertices: self.sizes.vertices as u32,
                 limits: self.edges.len() as u32,
                 slips_from_here: u32::from(slips_from_here),

@@ -238,7 +238,7 @@ pub struct Row {
     pub multiplier: f32,
     /// The candidate of the row.
     pub candidate: u32,
-    /// Its color in its bucket; [`COLORS`](crate::kernels::color::COLORS) if there is none for it.
+    /// Its color in its bucket; [`COLORS`](crate::kernels::color_rows::COLORS) if there is none for it.
     pub color: u32,
     /// How far the contact has slipped since the start of the time step, across the normal.
     pub slip: [f32; 3],

@@ -34,17 +34,21 @@ impl Kernel {
         let params = types::name(&self.module, params);
         let _ = writeln!(
             out,
-            "// Written from `shader/{0}.wgsl` by `cargo xtask twins`: change that file, not this one.\n\n\
+            "// Written from `shader/{0}/{1}.wgsl` by `cargo xtask twins`: change that file, not this one.\n\n\
              use crate::stages::Access::{{Read, Write}};\n\
              use crate::stages::Stage;\n\
              use bytemuck::{{Pod, Zeroable}};\n\n\
-             pub static STAGE: Stage = Stage {{\n    name: \"{0}\",\n    parts: &[",
-            self.name
+             pub static STAGE: Stage = Stage {{\n    name: \"{1}\",\n    parts: &[",
+            self.folder, self.name
         );
         for part in &self.parts {
             let _ = writeln!(out, "        include_str!(\"../../shader/shared/{part}.wgsl\"),");
         }
-        let _ = writeln!(out, "        include_str!(\"../../shader/{}.wgsl\"),\n    ],", self.name);
+        let _ = writeln!(
+            out,
+            "        include_str!(\"../../shader/{}/{}.wgsl\"),\n    ],",
+            self.folder, self.name
+        );
         let access: Vec<&str> =
             buffers.iter().map(|(_, _, space)| if writes(*space) { "Write" } else { "Read" }).collect();
         let _ = writeln!(

@@ -7,6 +7,8 @@ use std::collections::BTreeSet;
 
 /// A kernel, parsed and checked.
 pub struct Kernel {
+    /// The folder of its text.
+    pub folder: String,
     pub name: String,
     /// Names of the shared parts that its text begins with.
     pub parts: Vec<String>,
@@ -20,7 +22,7 @@ pub struct Kernel {
 
 impl Kernel {
     /// Parses the whole text of a kernel.
-    pub fn new(name: &str, parts: Vec<String>, source: &str) -> Self {
+    pub fn new(folder: &str, name: &str, parts: Vec<String>, source: &str) -> Self {
         let mut module = naga::front::wgsl::parse_str(source)
             .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)));
         for (_, function) in module.functions.iter_mut() {
@@ -31,8 +33,15 @@ impl Kernel {
             .validate(&module)
             .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)));
         let threads = module.entry_points[0].workgroup_size[0];
-        let mut kernel =
-            Self { name: name.to_owned(), parts, module, info, threads, waiting: BTreeSet::new() };
+        let mut kernel = Self {
+            folder: folder.to_owned(),
+            name: name.to_owned(),
+            parts,
+            module,
+            info,
+            threads,
+            waiting: BTreeSet::new(),
+        };
         // Functions call only those before them.
         for (handle, function) in kernel.module.functions.iter() {
             if kernel.has_waits(&function.body) {

@@ -26,6 +26,7 @@ mod types;
 mod uniform;
 
 use kernel::Kernel;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,53 +35,85 @@ use std::process::ExitCode;
 /// What a shader that needs shared parts begins with: their names follow.
 const PARTS: &str = "// Parts: ";
 
+/// The folder of the shared parts; all others hold kernels.
+const SHARED: &str = "shared";
+
 fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-fn kernel(shaders: &Path, name: &str) -> Kernel {
-    let text = read(&shaders.join(format!("{name}.wgsl")));
+/// The kernel in `FOLDER/NAME.wgsl`.
+fn kernel(shaders: &Path, folder: &str, name: &str) -> Kernel {
+    let text = read(&shaders.join(folder).join(format!("{name}.wgsl")));
     let first = text.lines().next().unwrap_or_default();
     let parts = first.strip_prefix(PARTS).map(|parts| parts.trim_end_matches('.').split(", "));
     let parts: Vec<String> =
         std::iter::once("dispatch").chain(parts.into_iter().flatten()).map(str::to_owned).collect();
-    let shared = |part: &String| read(&shaders.join("shared").join(format!("{part}.wgsl")));
+    let shared = |part: &String| read(&shaders.join(SHARED).join(format!("{part}.wgsl")));
     let source: String = parts.iter().map(shared).chain([text.clone()]).collect();
-    Kernel::new(name, parts, &source)
+    Kernel::new(folder, name, parts, &source)
 }
 
-/// The list of all kernels.
-fn list(names: &[String]) -> String {
+/// The list of all kernels, by folder.
+fn list(shaders: &[(String, String)]) -> String {
     let mut out = String::from(
         "//! The kernels, each with its table entry and its twin.\n//!\n\
          //! Written from `shader/` by `cargo xtask twins`: change those files, not these.\n\n",
     );
-    for name in names {
+    let mut folder = "";
+    for (next, name) in shaders {
+        if next != folder {
+            let _ = writeln!(out, "{}// shader/{next}", if folder.is_empty() { "" } else { "\n" });
+            folder = next;
+        }
         let _ = writeln!(out, "pub mod {name};");
     }
     out.push('\n');
-    for name in names {
+    for (_, name) in shaders {
         let _ = writeln!(out, "pub use {name}::STAGE as {};", name.to_uppercase());
     }
     let _ = writeln!(
         out,
         "\n/// All of them.\n#[cfg(test)]\npub static ALL: &[&crate::stages::Stage] = &[{}];",
-        names.iter().map(|name| format!("&{}", name.to_uppercase())).collect::<Vec<_>>().join(", ")
+        shaders.iter().map(|(_, name)| format!("&{}", name.to_uppercase())).collect::<Vec<_>>().join(", ")
     );
     out
 }
 
+/// Paths of what is in a folder, sorted.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let found = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut paths: Vec<PathBuf> = found.map(|entry| entry.expect("an entry of a folder").path()).collect();
+    paths.sort();
+    paths
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Folder and name of each kernel. A name says which one it is without its folder.
+fn kernels(shaders: &Path) -> Vec<(String, String)> {
+    let folders = entries(shaders).into_iter().filter(|path| path.is_dir() && !path.ends_with(SHARED));
+    let of_folder = |folder: PathBuf| {
+        let files = entries(&folder).into_iter();
+        files
+            .filter(|path| path.extension().is_some_and(|e| e == "wgsl"))
+            .map(move |p| (stem(&folder), stem(&p)))
+    };
+    let found: Vec<(String, String)> = folders.flat_map(of_folder).collect();
+    let mut names = BTreeSet::new();
+    for (folder, name) in &found {
+        assert!(names.insert(name), "{folder}/{name}.wgsl: another folder has a kernel of this name");
+    }
+    found
+}
+
 /// All files by their names without an ending.
 fn files(shaders: &Path) -> Vec<(String, String)> {
-    let found = fs::read_dir(shaders).unwrap_or_else(|error| panic!("{}: {error}", shaders.display()));
-    let mut names: Vec<String> = found
-        .map(|entry| entry.expect("an entry of a folder").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "wgsl"))
-        .filter_map(|path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()))
-        .collect();
-    names.sort();
-    let twins = names.iter().map(|name| (name.clone(), kernel(shaders, name).file()));
-    twins.chain([("mod".to_owned(), list(&names))]).collect()
+    let kernels = kernels(shaders);
+    let twins = kernels.iter().map(|(folder, name)| (name.clone(), kernel(shaders, folder, name).file()));
+    twins.chain([("mod".to_owned(), list(&kernels))]).collect()
 }
 
 /// Where the crate of the kernels is.

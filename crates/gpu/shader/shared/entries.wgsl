@@ -1,4 +1,4 @@
-// A list whose entries get their places (count.wgsl, total.wgsl, place.wgsl).
+// A list whose entries get their places (scan_counts.wgsl, scan_blocks.wgsl, scan_places.wgsl).
 
 // The candidates, by row of the search: they are as they were unless a search changes them.
 const CANDIDATES: u32 = 0u;

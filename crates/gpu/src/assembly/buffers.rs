@@ -175,7 +175,7 @@ impl AssemblyBuffers {
         self.record_elements(place, recording);
         let (nodes, entries) = (self.plan.nodes, self.plan.entries.len());
         recording.dispatch(
-            &kernels::ASSEMBLE,
+            &kernels::ASSEMBLE_BLOCKS,
             &[
                 self.entries.buffer,
                 self.sources,
@@ -184,13 +184,13 @@ impl AssemblyBuffers {
                 self.row_sums.buffer,
                 linear.words,
             ],
-            kernels::assemble::Params { entries: entries as u32, nodes: nodes as u32 },
+            kernels::assemble_blocks::Params { entries: entries as u32, nodes: nodes as u32 },
             entries + nodes,
         );
         recording.dispatch(
-            &kernels::DIAGONAL,
+            &kernels::DIAGONAL_BLOCKS,
             &[linear.slices, linear.words, self.diagonal],
-            kernels::diagonal::Params { nodes: nodes as u32 },
+            kernels::diagonal_blocks::Params { nodes: nodes as u32 },
             nodes,
         );
     }
@@ -202,11 +202,11 @@ impl AssemblyBuffers {
         let damped = if plan.has_damped_tetrahedra() { plan.tetrahedra.len() } else { 0 };
         let strands = tetrahedra + 6 * plan.tetrahedra.len();
         let kinds: [(&'static Stage, BufferId, usize, usize); 5] = [
-            (&kernels::MEMBRANE, self.membranes, plan.membranes.len(), 0),
-            (&kernels::BEND, self.bends, plan.bends.len(), bends),
-            (&kernels::TETRAHEDRON, self.tetrahedra, plan.tetrahedra.len(), tetrahedra),
-            (&kernels::DAMPED_TETRAHEDRON, self.tetrahedra, damped, tetrahedra),
-            (&kernels::STRAND, self.strands, plan.strands.len(), strands),
+            (&kernels::MEMBRANE_HESSIAN, self.membranes, plan.membranes.len(), 0),
+            (&kernels::BEND_HESSIAN, self.bends, plan.bends.len(), bends),
+            (&kernels::TETRAHEDRON_HESSIAN, self.tetrahedra, plan.tetrahedra.len(), tetrahedra),
+            (&kernels::DAMPED_TETRAHEDRON_HESSIAN, self.tetrahedra, damped, tetrahedra),
+            (&kernels::STRAND_HESSIAN, self.strands, plan.strands.len(), strands),
         ];
         for (stage, buffer, elements, first_block) in kinds {
             let bound = [buffer, place.positions, place.start, self.blocks, self.curvatures];

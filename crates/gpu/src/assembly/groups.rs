@@ -106,9 +106,9 @@ impl GroupBuffers {
             let (count, first) = level.map_or((1, self.hierarchy.frames - 1), |l| (l.groups, l.first_frame));
             let width = if index < 2 { [CHILDREN, PATCH_SLOTS][index] } else { 0 };
             recording.dispatch(
-                &kernels::FRAME,
+                &kernels::GROUP_FRAMES,
                 &[positions, linear.slots, self.frames, linear.links],
-                kernels::frame::Params {
+                kernels::group_frames::Params {
                     count: count as u32,
                     first: first as u32,
                     first_part: parts.map_or(0, |level| level.first_frame as u32),
@@ -124,7 +124,7 @@ impl GroupBuffers {
             let (pairs, first) = (level.pairs as u32, level.first_pair as u32);
             if index < 2 {
                 recording.dispatch(
-                    &kernels::COUPLE,
+                    &kernels::GALERKIN_BLOCKS,
                     &[
                         self.pairs,
                         linear.slices,
@@ -135,7 +135,7 @@ impl GroupBuffers {
                         self.frames,
                         self.couplings,
                     ],
-                    kernels::couple::Params {
+                    kernels::galerkin_blocks::Params {
                         pairs,
                         first,
                         width: level.width as u32,
@@ -146,29 +146,29 @@ impl GroupBuffers {
                 );
             } else {
                 recording.dispatch(
-                    &kernels::COARSEN,
+                    &kernels::COARSEN_BLOCKS,
                     &[self.sums, self.parts, self.frames, self.couplings],
-                    kernels::coarsen::Params { pairs, first, quantum },
-                    kernels::COARSEN.workgroup * level.pairs,
+                    kernels::coarsen_blocks::Params { pairs, first, quantum },
+                    kernels::COARSEN_BLOCKS.workgroup * level.pairs,
                 );
             }
         }
         let (first, chunks) = self.chunks;
         if springs && chunks > 0 {
             recording.dispatch(
-                &kernels::PRESS,
+                &kernels::DOMAIN_SPRINGS,
                 &[linear.springs, self.touching, self.places, positions, self.frames, self.pressed],
-                kernels::press::Params { chunks: chunks as u32, first: first as u32, quantum },
-                kernels::PRESS.workgroup * chunks,
+                kernels::domain_springs::Params { chunks: chunks as u32, first: first as u32, quantum },
+                kernels::DOMAIN_SPRINGS.workgroup * chunks,
             );
         }
         for (index, level) in levels.iter().enumerate() {
             let (inverses, first_inverse) =
                 if index == 0 { (linear.domains, 0) } else { (linear.coarse, coarse(level.first_domain)) };
             recording.dispatch(
-                &kernels::DOMAIN,
+                &kernels::INVERT_DOMAINS,
                 &[self.tables, self.couplings, self.touching, self.pressed, self.frames, inverses],
-                kernels::domain::Params {
+                kernels::invert_domains::Params {
                     domains: level.domains as u32,
                     first: level.first_domain as u32,
                     first_inverse: first_inverse as u32,
@@ -176,7 +176,7 @@ impl GroupBuffers {
                     parts: level.groups as u32,
                     springs: u32::from(springs && chunks > 0),
                 },
-                kernels::DOMAIN.workgroup * level.domains,
+                kernels::INVERT_DOMAINS.workgroup * level.domains,
             );
         }
     }

@@ -48,9 +48,9 @@ pub struct Sizes {
 pub struct Buffers {
     /// Candidates that fit into their list.
     pub capacity: usize,
-    /// Candidates of the time before a search for which there is room, and candidates that can be picked.
+    /// Candidates of the time before a search for which there is room, and candidates that can be selected.
     pub old_capacity: usize,
-    pub pick_capacity: usize,
+    pub selection_capacity: usize,
     /// Contact rows for which there is room.
     pub row_capacity: usize,
     pub positions: BufferId,
@@ -100,18 +100,18 @@ pub struct Buffers {
     /// Where the vertices go in this step.
     pub aims: BufferId,
     /// Sums of the coarse correction by block; its factor, and by how much the multipliers may still grow.
-    pub slack: BufferId,
-    pub factor: BufferId,
+    pub coarse_sums: BufferId,
+    pub coarse_factor: BufferId,
     /// Who has the row of a contact. Its size, a power of two, does not depend on what there is room for.
     pub contacts: BufferId,
     pub contact_places: usize,
-    pub picks: PickBuffers,
+    pub selection: SelectionBuffers,
     pub rows: RowBuffers,
 }
 
 /// Which candidates have a row, one entry per candidate.
 #[derive(Clone, Copy, Debug)]
-pub struct PickBuffers {
+pub struct SelectionBuffers {
     /// Whether each candidate has a row, then the places of the rows by candidate, and where the last one ends; sums by
     /// block.
     pub starts: BufferId,
@@ -152,7 +152,7 @@ impl Buffers {
         Ok(Self {
             capacity,
             old_capacity: capacity,
-            pick_capacity: capacity,
+            selection_capacity: capacity,
             row_capacity,
             positions: engine.buffer("positions", 4 * vertices)?,
             rest: engine.buffer("rest positions", 4 * vertices)?,
@@ -173,7 +173,7 @@ impl Buffers {
             reports: engine.buffer("reports", words::<Control>(1))?,
             arguments: engine.buffer("arguments", 0)?,
             starts: engine.buffer("starts", rows + 1)?,
-            blocks: engine.buffer("blocks", rows.div_ceil(kernels::COUNT.workgroup))?,
+            blocks: engine.buffer("blocks", rows.div_ceil(kernels::SCAN_COUNTS.workgroup))?,
             candidates: engine.buffer("candidates", words::<Candidate>(capacity))?,
             separations: engine.buffer("separations", words::<Separation>(capacity))?,
             states: engine.buffer("states of pairs", words::<PairState>(capacity))?,
@@ -193,11 +193,11 @@ impl Buffers {
             pushes: engine.buffer("pushes", 4 * vertices)?,
             late: engine.buffer("progress", words::<Late>(vertices))?,
             aims: engine.buffer("aims", 4 * vertices)?,
-            slack: engine.buffer("slack", 2 * kernels::FACTOR.workgroup)?,
-            factor: engine.buffer("factor", 2)?,
+            coarse_sums: engine.buffer("coarse sums", 2 * kernels::COARSE_FACTOR.workgroup)?,
+            coarse_factor: engine.buffer("coarse factor", 2)?,
             contacts: engine.buffer("contacts", contact_places)?,
             contact_places,
-            picks: PickBuffers::new(engine, capacity)?,
+            selection: SelectionBuffers::new(engine, capacity)?,
             rows: RowBuffers::new(engine, sizes, row_capacity)?,
         })
     }
@@ -263,15 +263,15 @@ impl Buffers {
         Ok(())
     }
 
-    /// Makes room for a step that is not made again: to pick among all present candidates, and to keep these.
+    /// Makes room for a step that is not made again: to select among all present candidates, and to keep these.
     ///
     /// # Errors
     /// The device has no memory.
     pub fn make_room_for_step(&mut self, engine: &mut impl Engine) -> Result<(), GpuError> {
-        if self.pick_capacity < self.capacity {
-            self.picks.free(engine);
-            self.pick_capacity = self.capacity;
-            self.picks = PickBuffers::new(engine, self.capacity)?;
+        if self.selection_capacity < self.capacity {
+            self.selection.free(engine);
+            self.selection_capacity = self.capacity;
+            self.selection = SelectionBuffers::new(engine, self.capacity)?;
         }
         if self.old_capacity < self.capacity {
             engine.free(self.old_elements);
@@ -284,11 +284,11 @@ impl Buffers {
     }
 }
 
-impl PickBuffers {
+impl SelectionBuffers {
     fn new(engine: &mut impl Engine, capacity: usize) -> Result<Self, GpuError> {
         Ok(Self {
             starts: engine.buffer("starts of rows", capacity + 1)?,
-            blocks: engine.buffer("blocks of rows", capacity.div_ceil(kernels::COUNT.workgroup))?,
+            blocks: engine.buffer("blocks of rows", capacity.div_ceil(kernels::SCAN_COUNTS.workgroup))?,
         })
     }
 

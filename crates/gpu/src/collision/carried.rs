@@ -20,7 +20,7 @@ pub struct Carried {
     pub friction: Vector,
 }
 
-/// Entries in the order of the search in `resume.wgsl`. Those that do not press, or have no finite numbers in single
+/// Entries in the order of the search in `warm_start.wgsl`. Those that do not press, or have no finite numbers in single
 /// precision, are left out, and all but the first of a pair.
 pub fn sorted(grid: &Grid, carried: &[Carried]) -> Vec<CarriedState> {
     let entry = |pair: &Carried| {
@@ -88,15 +88,15 @@ impl CarriedList {
         Ok(Self { buffer, capacity, count: 0 })
     }
 
-    /// Gives new candidates what their pairs carry, if any does. [`kernels::SPACE`] keeps it when it completes their states.
+    /// Gives new candidates what their pairs carry, if any does. [`kernels::DESIRED_DISTANCES`] keeps it when it completes their states.
     pub fn record(&self, b: &Buffers, recording: &mut Recording) {
         if self.count == 0 {
             return;
         }
         recording.dispatch(
-            &kernels::RESUME,
+            &kernels::WARM_START,
             &[self.buffer, b.candidates, b.states, b.control],
-            kernels::resume::Params { capacity: b.capacity as u32, carried: self.count as u32 },
+            kernels::warm_start::Params { capacity: b.capacity as u32, carried: self.count as u32 },
             b.capacity,
         );
     }

@@ -2,11 +2,11 @@
 //!
 //! **No pair within range is missing.** The boxes of the last search hold the trust regions of the vertices and, around
 //! them, their margins; a pair that it did not list has boxes apart along an axis. All vertices are still in their
-//! regions: a step moves none out of its region, or searches first ([`cover`](crate::kernels::cover)); safety rests on the
+//! regions: a step moves none out of its region, or searches first ([`crate::kernels::update_trust_regions`]); safety rests on the
 //! same. Both elements lie within the boxes of their regions, so their distance exceeds both margins, which is the largest
 //! range of any of their pairs. In the same way a half-space that was not listed is farther from the whole region of a
 //! vertex than twice its margin, the rounding of the plane included. So all pairs within range are candidates, also after
-//! the last move. Of the candidates, `near` drops those alone that a certified slab holds farther apart than both margins:
+//! the last move. Of the candidates, `mark_near_pairs` drops those alone that a certified slab holds farther apart than both margins:
 //! a lower bound of the distance, rounding included. The host computes the distances of the others in double precision and
 //! drops what is out of range.
 
@@ -16,7 +16,7 @@ use super::{Collision, CollisionError, ContactRow, End};
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::kernels;
-use crate::kernels::count::CONTACT_ROWS;
+use crate::kernels::scan_counts::CONTACT_ROWS;
 use crate::layout::{Candidate, Control, Row};
 use crate::recording::{BufferId, Recording};
 use bowknot_geometry::Vector;
@@ -77,36 +77,36 @@ impl<E: Engine> Collision<E> {
     /// all of what it writes anew.
     pub(super) fn record_end(&mut self, recording: &mut Recording) {
         let control = words::<Control>(1);
-        let params = kernels::copy::Params { words: control as u32 };
-        recording.dispatch(&kernels::COPY, &[self.buffers.control, self.end_control], params, control);
+        let params = kernels::copy_words::Params { words: control as u32 };
+        recording.dispatch(&kernels::COPY_WORDS, &[self.buffers.control, self.end_control], params, control);
         std::mem::swap(&mut self.buffers.control, &mut self.end_control);
         self.record_separations(false, recording);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
-            &kernels::NEAR,
-            &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.picks.starts, b.control],
-            kernels::near::Params { capacity },
+            &kernels::MARK_NEAR_PAIRS,
+            &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.selection.starts, b.control],
+            kernels::mark_near_pairs::Params { capacity },
             self.buffers.capacity,
         );
         // Their number takes the place of that of the contact rows in the copy.
         let places = ListPlaces {
-            starts: b.picks.starts,
-            blocks: b.picks.blocks,
+            starts: b.selection.starts,
+            blocks: b.selection.blocks,
             rows: capacity,
             capacity: self.near.capacity as u32,
             list: CONTACT_ROWS,
         };
-        self.record_places(&places, recording);
-        self.record_gather(recording);
+        self.record_scan(&places, recording);
+        self.record_near_list(recording);
         std::mem::swap(&mut self.buffers.control, &mut self.end_control);
     }
 
-    fn record_gather(&self, recording: &mut Recording) {
+    fn record_near_list(&self, recording: &mut Recording) {
         let b = &self.buffers;
         recording.dispatch(
-            &kernels::LIST_NEAR,
-            &[b.picks.starts, b.candidates, self.near.buffer, b.control],
-            kernels::list_near::Params {
+            &kernels::LIST_NEAR_PAIRS,
+            &[b.selection.starts, b.candidates, self.near.buffer, b.control],
+            kernels::list_near_pairs::Params {
                 capacity: self.buffers.capacity as u32,
                 near_capacity: self.near.capacity as u32,
             },
@@ -124,7 +124,7 @@ impl<E: Engine> Collision<E> {
             self.near.grow(&mut self.engine, count)?;
             let mut recording = Recording::default();
             std::mem::swap(&mut self.buffers.control, &mut self.end_control);
-            self.record_gather(&mut recording);
+            self.record_near_list(&mut recording);
             std::mem::swap(&mut self.buffers.control, &mut self.end_control);
             self.engine.run(&recording, &[(self.near.buffer, words::<Candidate>(count))])?.swap_remove(0)
         };

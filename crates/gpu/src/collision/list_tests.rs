@@ -5,7 +5,7 @@ use super::buffers::words;
 use crate::adapter::Adapter;
 use crate::engine::{ComparingEngine, DeviceEngine, Engine};
 use crate::kernels;
-use crate::kernels::count::{CANDIDATES, CONTACT_ROWS};
+use crate::kernels::scan_counts::{CANDIDATES, CONTACT_ROWS};
 use crate::layout::{Bucket, Control, NONE};
 use crate::recording::Recording;
 
@@ -18,19 +18,19 @@ fn engine() -> ComparingEngine {
 fn places(counts: &[u32], capacity: u32, list: u32, control: Control) -> (Vec<u32>, Control) {
     let mut engine = engine();
     let rows = counts.len();
-    let block_count = rows.div_ceil(kernels::COUNT.workgroup);
+    let block_count = rows.div_ceil(kernels::SCAN_COUNTS.workgroup);
     let starts = engine.buffer("starts", rows + 1).unwrap();
     let blocks = engine.buffer("blocks", block_count).unwrap();
     let kept = engine.buffer("control", words::<Control>(1)).unwrap();
     let mut recording = Recording::default();
     recording.write(starts, counts);
     recording.write(kept, &[control]);
-    let params = kernels::count::Params { rows: rows as u32, list };
-    recording.dispatch(&kernels::COUNT, &[starts, blocks, kept], params, rows);
-    let params = kernels::total::Params { blocks: block_count as u32, capacity, list };
-    recording.dispatch(&kernels::TOTAL, &[blocks, kept], params, 1);
-    let params = kernels::place::Params { rows: rows as u32, list };
-    recording.dispatch(&kernels::PLACE, &[blocks, starts, kept], params, rows);
+    let params = kernels::scan_counts::Params { rows: rows as u32, list };
+    recording.dispatch(&kernels::SCAN_COUNTS, &[starts, blocks, kept], params, rows);
+    let params = kernels::scan_blocks::Params { blocks: block_count as u32, capacity, list };
+    recording.dispatch(&kernels::SCAN_BLOCKS, &[blocks, kept], params, 1);
+    let params = kernels::scan_places::Params { rows: rows as u32, list };
+    recording.dispatch(&kernels::SCAN_PLACES, &[blocks, starts, kept], params, rows);
     let read = engine.run(&recording, &[(starts, rows + 1), (kept, words::<Control>(1))]).unwrap();
     assert_eq!(engine.differences(), []);
     (read[0].clone(), bytemuck::cast_slice(&read[1])[0])
@@ -40,7 +40,7 @@ fn places(counts: &[u32], capacity: u32, list: u32, control: Control) -> (Vec<u3
 #[test]
 fn numbers_of_candidates_beyond_32_bits_overflow_the_list() {
     // The sum is 2^32 + 300: within a block, over blocks, and over rounds of blocks.
-    for (rows, count) in [(200, 1 << 25), (600, 1 << 23), (300 * kernels::COUNT.workgroup, 1 << 17)] {
+    for (rows, count) in [(200, 1 << 25), (600, 1 << 23), (300 * kernels::SCAN_COUNTS.workgroup, 1 << 17)] {
         let mut counts = vec![count; rows];
         let sum = |counts: &[u32]| counts.iter().map(|count| u64::from(*count)).sum::<u64>();
         counts[0] = ((1u64 << 32) + 300).saturating_sub(sum(&counts[1..])).max(7) as u32;
@@ -87,10 +87,10 @@ fn one_workgroup_adds_any_number_of_blocks_and_buckets() {
         recording.write(blocks, &numbers);
         recording.write(tally, &numbers);
         recording.write(control, &[Control { changed: 1, ..Control::default() }]);
-        let params = kernels::total::Params { blocks: count as u32, capacity: NONE, list: CANDIDATES };
-        recording.dispatch(&kernels::TOTAL, &[blocks, control], params, 1);
-        let params = kernels::start_buckets::Params { buckets: count as u32 };
-        recording.dispatch(&kernels::START_BUCKETS, &[tally, buckets], params, 1);
+        let params = kernels::scan_blocks::Params { blocks: count as u32, capacity: NONE, list: CANDIDATES };
+        recording.dispatch(&kernels::SCAN_BLOCKS, &[blocks, control], params, 1);
+        let params = kernels::scan_buckets::Params { buckets: count as u32 };
+        recording.dispatch(&kernels::SCAN_BUCKETS, &[tally, buckets], params, 1);
         let wanted = [(blocks, count), (control, words::<Control>(1)), (buckets, words::<Bucket>(count))];
         let read = engine.run(&recording, &wanted).unwrap();
         assert_eq!(engine.differences(), []);

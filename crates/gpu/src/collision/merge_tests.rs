@@ -1,4 +1,4 @@
-//! Contacts that several pairs have: one of them keeps the row, by the twins of `enlist` and `merge`.
+//! Contacts that several pairs have: one of them keeps the row, by the twins of `hash_contacts` and `merge_rows`.
 #![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
 
 use super::buffers::words;
@@ -17,7 +17,7 @@ struct Scene {
     candidates: Vec<Candidate>,
     separations: Vec<Separation>,
     states: Vec<PairState>,
-    picked: Vec<u32>,
+    selected: Vec<u32>,
 }
 
 impl Scene {
@@ -46,8 +46,8 @@ impl Scene {
             });
             states.push(PairState { multiplier: [0.0, 0.0, 3.0][random.usize(..3)], ..PairState::NEW });
         }
-        let picked = (0..400).map(|_| u32::from(random.u8(..4) > 0)).collect();
-        Self { edges, triangles, candidates, separations, states, picked }
+        let selected = (0..400).map(|_| u32::from(random.u8(..4) > 0)).collect();
+        Self { edges, triangles, candidates, separations, states, selected }
     }
 
     /// Which candidates keep their rows, with a table of so many places, and what their states are then.
@@ -65,21 +65,21 @@ impl Scene {
         let candidates = filled(cast_slice(&self.candidates));
         let separations = filled(cast_slice(&self.separations));
         let states = filled(cast_slice(&self.states));
-        let starts = filled(&self.picked);
+        let starts = filled(&self.selected);
         let table = filled(&vec![NONE; places]);
         let control = Control { candidates: count as u32, ..Control::default() };
         let control = filled(cast_slice(&[control]));
         let (capacity, mask) = (count as u32, places as u32 - 1);
         recording.dispatch(
-            &kernels::ENLIST,
+            &kernels::HASH_CONTACTS,
             &[edges, triangles, candidates, separations, states, starts, table, control],
-            kernels::enlist::Params { capacity, mask },
+            kernels::hash_contacts::Params { capacity, mask },
             count,
         );
         recording.dispatch(
-            &kernels::MERGE,
+            &kernels::MERGE_ROWS,
             &[edges, triangles, candidates, separations, table, states, starts, control],
-            kernels::merge::Params { capacity, mask },
+            kernels::merge_rows::Params { capacity, mask },
             count,
         );
         let read = [(starts, count), (states, words::<PairState>(count))];
@@ -97,7 +97,7 @@ impl Scene {
             candidates: vec![a.0, b.0],
             separations: [a.1, b.1].map(|separation| Separation { wanted: 1.0, ..separation }).to_vec(),
             states: vec![PairState::NEW; 2],
-            picked: vec![1; 2],
+            selected: vec![1; 2],
         };
         pair.merged(1).0.contains(&0)
     }
@@ -113,7 +113,7 @@ fn what_loses_its_row_has_that_of_another_pair_with_the_same_closest_points() {
             let pressed = |c: usize| scene.states[c].multiplier > 0.0;
             let (starts, states) = scene.merged(places);
             let kept: Vec<usize> = (0..starts.len()).filter(|c| starts[*c] == 1).collect();
-            for c in (0..starts.len()).filter(|c| scene.picked[*c] == 1 && starts[*c] == 0) {
+            for c in (0..starts.len()).filter(|c| scene.selected[*c] == 1 && starts[*c] == 0) {
                 let own: Vec<usize> = kept.iter().copied().filter(|r| scene.same(c, *r)).collect();
                 assert!(own.iter().any(|r| scene.separations[*r].wanted >= scene.separations[c].wanted));
                 // A pair that presses gives way to one that presses.
@@ -127,7 +127,7 @@ fn what_loses_its_row_has_that_of_another_pair_with_the_same_closest_points() {
                 }
                 lost += 1;
             }
-            assert!((0..starts.len()).all(|c| scene.picked[c] >= starts[c]));
+            assert!((0..starts.len()).all(|c| scene.selected[c] >= starts[c]));
         }
         assert!(lost > if places == 1 << 20 { 200 } else { 2 }, "{places} places: {lost}");
     }
@@ -171,7 +171,7 @@ fn contacts_are_told_apart_by_the_vertices_of_both_sides() {
         candidates: all.iter().map(|(_, pair)| pair.0).collect(),
         separations: all.iter().map(|(_, pair)| pair.1).collect(),
         states: vec![PairState::NEW; all.len()],
-        picked: vec![1; all.len()],
+        selected: vec![1; all.len()],
     };
     for a in 0..all.len() {
         for b in (0..all.len()).filter(|b| *b != a) {

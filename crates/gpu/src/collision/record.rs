@@ -3,7 +3,7 @@
 use super::Collision;
 use crate::engine::Engine;
 use crate::kernels;
-use crate::kernels::decide::{AFTER_SEARCH, AFTER_STEP};
+use crate::kernels::stop_rule::{AFTER_SEARCH, AFTER_STEP};
 use crate::layout::Block;
 use crate::recording::{Phase, Recording};
 
@@ -15,7 +15,7 @@ impl<E: Engine> Collision<E> {
     /// The dispatches of a step, in order. `first`: it is the first one of its submission, of which so many dispatches
     /// can be left out.
     pub(super) fn record_step(&self, first: bool, dispatches: usize, recording: &mut Recording) {
-        self.record_restart(first, recording);
+        self.record_reset(first, recording);
         recording.begin_phase(Phase::Backward);
         // If the step is made again, the aims are known.
         if !self.again {
@@ -26,27 +26,27 @@ impl<E: Engine> Collision<E> {
         self.record_search(recording);
         self.record_geometry(true, recording);
         self.record_forward(recording);
-        self.record_decision(AFTER_STEP, dispatches, recording);
+        self.record_stop_rule(AFTER_STEP, dispatches, recording);
     }
 
     /// The first search of a call, without a step: along the ways to the targets, so that the rows of the first step know
     /// what it meets. `dispatches` as for a step.
     pub(super) fn record_first_search(&self, dispatches: usize, recording: &mut Recording) {
-        self.record_restart(true, recording);
+        self.record_reset(true, recording);
         self.record_paths(recording);
         self.record_search(recording);
         self.carried.record(&self.buffers, recording);
-        self.record_decision(AFTER_SEARCH, dispatches, recording);
+        self.record_stop_rule(AFTER_SEARCH, dispatches, recording);
     }
 
     /// Whether the submission goes on. `after`: what has gone before.
-    pub(super) fn record_decision(&self, after: u32, dispatches: usize, recording: &mut Recording) {
+    pub(super) fn record_stop_rule(&self, after: u32, dispatches: usize, recording: &mut Recording) {
         let (b, settings) = (&self.buffers, &self.settings);
         let polishing = (settings.polish_distance, settings.polish_stretch);
         recording.dispatch(
-            &kernels::DECIDE,
+            &kernels::STOP_RULE,
             &[b.control, b.reports, b.arguments],
-            kernels::decide::Params {
+            kernels::stop_rule::Params {
                 polishes: u32::from(self.polishes),
                 after,
                 dispatches: dispatches as u32,
@@ -57,12 +57,12 @@ impl<E: Engine> Collision<E> {
     }
 
     /// Resets what the stages of a step add to.
-    pub(super) fn record_restart(&self, first: bool, recording: &mut Recording) {
+    pub(super) fn record_reset(&self, first: bool, recording: &mut Recording) {
         let (b, groups) = (&self.buffers, self.sizes.groups);
         recording.dispatch(
-            &kernels::RESTART,
+            &kernels::RESET_STEP,
             &[b.group_caps, b.group_alphas, b.control],
-            kernels::restart::Params {
+            kernels::reset_step::Params {
                 groups: groups as u32,
                 again: u32::from(self.again),
                 first: u32::from(first),
@@ -76,28 +76,31 @@ impl<E: Engine> Collision<E> {
         recording.begin_phase(Phase::Forward);
         let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
         recording.dispatch(
-            &kernels::PLAN,
+            &kernels::CAP_TRAVEL,
             &[b.positions, b.aims, b.vertices, b.paths, b.group_caps],
-            kernels::plan::Params { vertices, longest: self.travel * self.settings.longest_travel as f32 },
+            kernels::cap_travel::Params {
+                vertices,
+                longest: self.travel * self.settings.longest_travel as f32,
+            },
             self.sizes.vertices,
         );
         recording.dispatch(
-            &kernels::JOIN,
+            &kernels::CAP_GROUPS,
             &[b.vertices, b.group_caps, b.paths, b.alphas],
-            kernels::join::Params { vertices },
+            kernels::cap_groups::Params { vertices },
             self.sizes.vertices,
         );
-        self.record_cover(recording);
+        self.record_trust_regions(recording);
     }
 
     /// New trust regions where the paths need them.
-    pub(super) fn record_cover(&self, recording: &mut Recording) {
+    pub(super) fn record_trust_regions(&self, recording: &mut Recording) {
         recording.begin_phase(Phase::Search);
         let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
         recording.dispatch(
-            &kernels::COVER,
+            &kernels::UPDATE_TRUST_REGIONS,
             &[b.positions, b.paths, b.vertices, b.balls, b.control],
-            kernels::cover::Params {
+            kernels::update_trust_regions::Params {
                 vertices,
                 all: u32::from(self.fresh || self.shrunk),
                 slack: self.travel * SLACK,
@@ -113,9 +116,9 @@ impl<E: Engine> Collision<E> {
         self.record_separations(after_search, recording);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
-            &kernels::SPACE,
+            &kernels::DESIRED_DISTANCES,
             &[b.rest, b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, b.control],
-            kernels::space::Params {
+            kernels::desired_distances::Params {
                 capacity,
                 after_search: u32::from(after_search),
                 min_separation: self.lengths.min_separation,
@@ -148,9 +151,9 @@ impl<E: Engine> Collision<E> {
         let (b, vertices, capacity) =
             (&self.buffers, self.sizes.vertices as u32, self.buffers.capacity as u32);
         recording.dispatch(
-            &kernels::LIMIT,
+            &kernels::LIMIT_STEP_SIZES,
             &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.paths, b.alphas, b.control],
-            kernels::limit::Params { capacity, damping: self.lengths.damping },
+            kernels::limit_step_sizes::Params { capacity, damping: self.lengths.damping },
             self.buffers.capacity,
         );
         recording.dispatch(
@@ -160,29 +163,29 @@ impl<E: Engine> Collision<E> {
             self.sizes.vertices,
         );
         recording.dispatch(
-            &kernels::ADVANCE,
+            &kernels::ADVANCE_VERTICES,
             &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control, b.late],
-            kernels::advance::Params { vertices, progress: self.lengths.progress },
+            kernels::advance_vertices::Params { vertices, progress: self.lengths.progress },
             self.sizes.vertices,
         );
         recording.dispatch(
-            &kernels::STRETCH,
+            &kernels::MAX_STRETCH,
             &[b.positions, b.limits, b.control],
-            kernels::stretch::Params { edges: self.edges.len() as u32 },
+            kernels::max_stretch::Params { edges: self.edges.len() as u32 },
             self.edges.len(),
         );
         let blocks = self.sizes.blocks as u32;
         recording.dispatch(
-            &kernels::RESIDUALS,
+            &kernels::BLOCK_RESIDUALS,
             &[b.vertex_blocks, b.positions, b.aims, b.displacements, b.vertices, b.block_sums],
-            kernels::residuals::Params { blocks },
+            kernels::block_residuals::Params { blocks },
             Block::MOST * self.sizes.blocks,
         );
         recording.dispatch(
-            &kernels::BALANCE,
+            &kernels::BODY_RESIDUALS,
             &[b.vertex_blocks, b.block_sums, b.control],
-            kernels::balance::Params { blocks },
-            kernels::BALANCE.workgroup * self.sizes.blocks,
+            kernels::body_residuals::Params { blocks },
+            kernels::BODY_RESIDUALS.workgroup * self.sizes.blocks,
         );
     }
 }

@@ -4,8 +4,8 @@ use super::Collision;
 use super::record_search::ListPlaces;
 use crate::engine::Engine;
 use crate::kernels;
-use crate::kernels::count::CONTACT_ROWS;
-use crate::kernels::decide::AFTER_ROWS;
+use crate::kernels::scan_counts::CONTACT_ROWS;
+use crate::kernels::stop_rule::AFTER_ROWS;
 use crate::recording::{Phase, Recording};
 
 /// Largest number of coarse corrections in a backward step, as on the CPU.
@@ -18,9 +18,12 @@ impl<E: Engine> Collision<E> {
         let (vertices, capacity) = (self.sizes.vertices, self.buffers.capacity as u32);
         let row_capacity = self.buffers.row_capacity as u32;
         recording.dispatch(
-            &kernels::RECALL,
+            &kernels::PREVIOUS_DISPLACEMENTS,
             &[b.positions, b.aims, b.displacements, b.contacts],
-            kernels::recall::Params { vertices: vertices as u32, table: b.contact_places as u32 },
+            kernels::previous_displacements::Params {
+                vertices: vertices as u32,
+                table: b.contact_places as u32,
+            },
             vertices.max(b.contact_places),
         );
         self.record_geometry(false, recording);
@@ -28,7 +31,7 @@ impl<E: Engine> Collision<E> {
         if self.settings.contacts_only {
             let [edges_first, triangles_first] = self.adjacency_starts;
             recording.dispatch(
-                &kernels::FACING,
+                &kernels::CLASSIFY_CONTACTS,
                 &[
                     b.positions,
                     b.edges,
@@ -39,12 +42,12 @@ impl<E: Engine> Collision<E> {
                     b.separations,
                     b.control,
                 ],
-                kernels::facing::Params { capacity, edges_first, triangles_first },
+                kernels::classify_contacts::Params { capacity, edges_first, triangles_first },
                 self.buffers.capacity,
             );
         }
         recording.dispatch(
-            &kernels::PICK,
+            &kernels::SELECT_ROWS,
             &[
                 b.displacements,
                 b.edges,
@@ -52,33 +55,33 @@ impl<E: Engine> Collision<E> {
                 b.candidates,
                 b.separations,
                 b.states,
-                b.picks.starts,
+                b.selection.starts,
                 b.control,
             ],
-            kernels::pick::Params { capacity, threshold: self.settings.active as f32 },
+            kernels::select_rows::Params { capacity, threshold: self.settings.active as f32 },
             self.buffers.capacity,
         );
         self.record_merging(recording);
         let places = ListPlaces {
-            starts: b.picks.starts,
-            blocks: b.picks.blocks,
+            starts: b.selection.starts,
+            blocks: b.selection.blocks,
             rows: capacity,
             capacity: row_capacity,
             list: CONTACT_ROWS,
         };
-        self.record_places(&places, recording);
+        self.record_scan(&places, recording);
         // Without room for all rows the step ends here, and is made again.
-        self.record_decision(AFTER_ROWS, dispatches, recording);
+        self.record_stop_rule(AFTER_ROWS, dispatches, recording);
         recording.dispatch(
-            &kernels::LIST,
-            &[b.edges, b.triangles, b.picks.starts, b.candidates, r.rows, r.pairs, b.control],
-            kernels::list::Params { capacity },
+            &kernels::COMPACT_ROWS,
+            &[b.edges, b.triangles, b.selection.starts, b.candidates, r.rows, r.pairs, b.control],
+            kernels::compact_rows::Params { capacity },
             self.buffers.capacity,
         );
         recording.dispatch(
-            &kernels::BUILD,
+            &kernels::LINEARIZE_ROWS,
             &[b.vertices, b.candidates, b.separations, b.states, r.rows, b.proximal, b.control],
-            kernels::build::Params {
+            kernels::linearize_rows::Params {
                 capacity: row_capacity,
                 strength: self.settings.contact_proximal as f32,
             },
@@ -86,7 +89,7 @@ impl<E: Engine> Collision<E> {
         );
         if self.frictional {
             recording.dispatch(
-                &kernels::SLIP,
+                &kernels::FRICTION_ROWS,
                 &[
                     b.positions,
                     b.slip_start,
@@ -97,7 +100,7 @@ impl<E: Engine> Collision<E> {
                     r.rows,
                     b.control,
                 ],
-                kernels::slip::Params {
+                kernels::friction_rows::Params {
                     capacity: row_capacity,
                     pair_frictions: self.sizes.pair_frictions as u32,
                     first_half_space: vertices as u32,
@@ -107,7 +110,7 @@ impl<E: Engine> Collision<E> {
         }
     }
 
-    /// Leaves one row to all picked candidates with the same closest points.
+    /// Leaves one row to all selected candidates with the same closest points.
     fn record_merging(&self, recording: &mut Recording) {
         // Grains alone have no closest points in common.
         if self.sizes.edges + self.sizes.triangles == 0 {
@@ -116,22 +119,22 @@ impl<E: Engine> Collision<E> {
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         let mask = b.contact_places as u32 - 1;
         recording.dispatch(
-            &kernels::ENLIST,
+            &kernels::HASH_CONTACTS,
             &[
                 b.edges,
                 b.triangles,
                 b.candidates,
                 b.separations,
                 b.states,
-                b.picks.starts,
+                b.selection.starts,
                 b.contacts,
                 b.control,
             ],
-            kernels::enlist::Params { capacity, mask },
+            kernels::hash_contacts::Params { capacity, mask },
             self.buffers.capacity,
         );
         recording.dispatch(
-            &kernels::MERGE,
+            &kernels::MERGE_ROWS,
             &[
                 b.edges,
                 b.triangles,
@@ -139,10 +142,10 @@ impl<E: Engine> Collision<E> {
                 b.separations,
                 b.contacts,
                 b.states,
-                b.picks.starts,
+                b.selection.starts,
                 b.control,
             ],
-            kernels::merge::Params { capacity, mask },
+            kernels::merge_rows::Params { capacity, mask },
             self.buffers.capacity,
         );
     }
@@ -151,27 +154,27 @@ impl<E: Engine> Collision<E> {
     fn record_colors(&self, recording: &mut Recording) {
         let (b, r, capacity) = (&self.buffers, &self.buffers.rows, self.buffers.row_capacity as u32);
         recording.dispatch(
-            &kernels::DIVIDE,
+            &kernels::BIN_ROWS,
             &[b.positions, b.displacements, r.rows, r.tally, b.control],
-            kernels::divide::Params { capacity, shift: self.bricks.shift, buckets: self.bricks.buckets },
+            kernels::bin_rows::Params { capacity, shift: self.bricks.shift, buckets: self.bricks.buckets },
             self.buffers.row_capacity,
         );
         recording.dispatch(
-            &kernels::START_BUCKETS,
+            &kernels::SCAN_BUCKETS,
             &[r.tally, r.buckets],
-            kernels::start_buckets::Params { buckets: self.bricks.count() as u32 },
+            kernels::scan_buckets::Params { buckets: self.bricks.count() as u32 },
             1,
         );
         recording.dispatch(
-            &kernels::SORT,
+            &kernels::SORT_ROWS,
             &[r.rows, r.buckets, r.tally, r.order, b.control],
-            kernels::sort::Params { capacity },
+            kernels::sort_rows::Params { capacity },
             self.buffers.row_capacity,
         );
         // One round after the other, for buckets of two rounds may share vertices.
         for round in self.bricks.rounds() {
             recording.dispatch(
-                &kernels::COLOR,
+                &kernels::COLOR_ROWS,
                 &[
                     b.displacements,
                     r.rows,
@@ -182,8 +185,8 @@ impl<E: Engine> Collision<E> {
                     r.order,
                     r.color_ends,
                 ],
-                kernels::color::Params { first: round.start, end: round.end, capacity },
-                kernels::COLOR.workgroup * round.len(),
+                kernels::color_rows::Params { first: round.start, end: round.end, capacity },
+                kernels::COLOR_ROWS.workgroup * round.len(),
             );
         }
     }
@@ -230,23 +233,41 @@ impl<E: Engine> Collision<E> {
         let [vertices, limits] = [self.sizes.vertices, self.edges.len()].map(|count| count as u32);
         let capacity = self.buffers.row_capacity as u32;
         let threads = self.buffers.row_capacity.max(self.sizes.vertices).max(self.edges.len());
-        let blocks = threads.div_ceil(kernels::SLACK.workgroup).min(kernels::FACTOR.workgroup);
+        let blocks = threads.div_ceil(kernels::COARSE_SUMS.workgroup).min(kernels::COARSE_FACTOR.workgroup);
         recording.dispatch(
-            &kernels::SLACK,
-            &[r.rows, b.limits, b.positions, b.targets, b.vertices, b.displacements, b.control, b.slack],
-            kernels::slack::Params { blocks: blocks as u32, capacity, limits, vertices },
-            blocks * kernels::SLACK.workgroup,
+            &kernels::COARSE_SUMS,
+            &[
+                r.rows,
+                b.limits,
+                b.positions,
+                b.targets,
+                b.vertices,
+                b.displacements,
+                b.control,
+                b.coarse_sums,
+            ],
+            kernels::coarse_sums::Params { blocks: blocks as u32, capacity, limits, vertices },
+            blocks * kernels::COARSE_SUMS.workgroup,
         );
         recording.dispatch(
-            &kernels::FACTOR,
-            &[b.slack, b.factor],
-            kernels::factor::Params { blocks: blocks as u32 },
+            &kernels::COARSE_FACTOR,
+            &[b.coarse_sums, b.coarse_factor],
+            kernels::coarse_factor::Params { blocks: blocks as u32 },
             1,
         );
         recording.dispatch(
-            &kernels::RESCALE,
-            &[b.factor, r.rows, b.limits, b.positions, b.targets, b.vertices, b.displacements, b.control],
-            kernels::rescale::Params { capacity, limits, vertices },
+            &kernels::COARSE_RESCALE,
+            &[
+                b.coarse_factor,
+                r.rows,
+                b.limits,
+                b.positions,
+                b.targets,
+                b.vertices,
+                b.displacements,
+                b.control,
+            ],
+            kernels::coarse_rescale::Params { capacity, limits, vertices },
             threads,
         );
     }
@@ -256,26 +277,26 @@ impl<E: Engine> Collision<E> {
         let (b, r) = (&self.buffers, &self.buffers.rows);
         let vertices = self.sizes.vertices as u32;
         recording.dispatch(
-            &kernels::CURVE_EDGES,
+            &kernels::ADD_EDGE_CURVATURE,
             &[b.positions, b.limits, b.proximal],
-            kernels::curve_edges::Params {
+            kernels::add_edge_curvature::Params {
                 edges: self.edges.len() as u32,
                 strength: self.settings.edge_proximal as f32,
             },
             self.edges.len(),
         );
         recording.dispatch(
-            &kernels::RELEASE,
+            &kernels::UNCONSTRAINED_MINIMUM,
             &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, b.swings, b.late],
-            kernels::release::Params { vertices },
+            kernels::unconstrained_minimum::Params { vertices },
             self.sizes.vertices,
         );
         if self.has_pins {
             let capacity = self.buffers.row_capacity as u32;
             recording.dispatch(
-                &kernels::RELIEVE,
+                &kernels::ATTAINABLE_DISTANCES,
                 &[b.positions, b.displacements, b.candidates, b.separations, r.rows, b.control],
-                kernels::relieve::Params { capacity },
+                kernels::attainable_distances::Params { capacity },
                 self.buffers.row_capacity,
             );
         }
@@ -291,15 +312,15 @@ impl<E: Engine> Collision<E> {
             self.record_edge_sweep(sweep == 0, recording);
         }
         recording.dispatch(
-            &kernels::STORE,
+            &kernels::STORE_MULTIPLIERS,
             &[r.rows, b.states, b.control],
-            kernels::store::Params { capacity: self.buffers.row_capacity as u32 },
+            kernels::store_multipliers::Params { capacity: self.buffers.row_capacity as u32 },
             self.buffers.row_capacity,
         );
         recording.dispatch(
-            &kernels::AIM,
+            &kernels::SET_AIMS,
             &[b.positions, b.targets, b.displacements, b.aims, b.swings],
-            kernels::aim::Params { vertices, growth: self.settings.proximal_growth as f32 },
+            kernels::set_aims::Params { vertices, growth: self.settings.proximal_growth as f32 },
             self.sizes.vertices,
         );
     }

@@ -4,7 +4,7 @@ use super::Collision;
 use super::trees::DeviceTree;
 use crate::engine::Engine;
 use crate::kernels;
-use crate::kernels::count::CANDIDATES;
+use crate::kernels::scan_counts::CANDIDATES;
 use crate::layout::Kind;
 use crate::recording::{BufferId, Recording};
 
@@ -22,34 +22,34 @@ impl<E: Engine> Collision<E> {
     /// The candidates, if trust regions have changed.
     pub(super) fn record_search(&self, recording: &mut Recording) {
         let b = &self.buffers;
-        self.record_keep(recording);
+        self.record_saved_candidates(recording);
         for tree in self.trees.targets() {
             tree.record_fit(b, recording);
         }
         self.record_finds(false, recording);
         let (rows, capacity) = (self.sizes.rows as u32, self.buffers.capacity as u32);
         let places = ListPlaces { starts: b.starts, blocks: b.blocks, rows, capacity, list: CANDIDATES };
-        self.record_places(&places, recording);
+        self.record_scan(&places, recording);
         self.record_finds(true, recording);
         recording.dispatch(
-            &kernels::INHERIT,
+            &kernels::INHERIT_STATES,
             &[b.starts, b.candidates, b.old_rows, b.old_elements, b.old_states, b.states, b.control],
-            kernels::inherit::Params { rows, capacity },
+            kernels::inherit_states::Params { rows, capacity },
             self.sizes.rows,
         );
     }
 
     /// Turns counts into places in a list: first how many entries come before each in its block, then in all.
-    pub(super) fn record_places(&self, places: &ListPlaces, recording: &mut Recording) {
+    pub(super) fn record_scan(&self, places: &ListPlaces, recording: &mut Recording) {
         let &ListPlaces { starts, blocks, rows, capacity, list } = places;
         let control = self.buffers.control;
-        let params = kernels::count::Params { rows, list };
-        recording.dispatch(&kernels::COUNT, &[starts, blocks, control], params, rows as usize);
-        let block_count = rows.div_ceil(kernels::COUNT.workgroup as u32);
-        let params = kernels::total::Params { blocks: block_count, capacity, list };
-        recording.dispatch(&kernels::TOTAL, &[blocks, control], params, 1);
-        let params = kernels::place::Params { rows, list };
-        recording.dispatch(&kernels::PLACE, &[blocks, starts, control], params, rows as usize);
+        let params = kernels::scan_counts::Params { rows, list };
+        recording.dispatch(&kernels::SCAN_COUNTS, &[starts, blocks, control], params, rows as usize);
+        let block_count = rows.div_ceil(kernels::SCAN_COUNTS.workgroup as u32);
+        let params = kernels::scan_blocks::Params { blocks: block_count, capacity, list };
+        recording.dispatch(&kernels::SCAN_BLOCKS, &[blocks, control], params, 1);
+        let params = kernels::scan_places::Params { rows, list };
+        recording.dispatch(&kernels::SCAN_PLACES, &[blocks, starts, control], params, rows as usize);
     }
 
     /// Counts the partners of all elements, or lists them.
@@ -76,15 +76,15 @@ impl<E: Engine> Collision<E> {
 
     /// Keeps the present candidates with their states. If the step is made again they have been kept already, and the
     /// present ones are not whole.
-    pub(super) fn record_keep(&self, recording: &mut Recording) {
+    pub(super) fn record_saved_candidates(&self, recording: &mut Recording) {
         if self.again {
             return;
         }
         let (b, rows) = (&self.buffers, self.sizes.rows);
         recording.dispatch(
-            &kernels::KEEP,
+            &kernels::SAVE_CANDIDATES,
             &[b.starts, b.candidates, b.states, b.old_rows, b.old_elements, b.old_states, b.control],
-            kernels::keep::Params { rows: rows as u32, capacity: self.buffers.capacity as u32 },
+            kernels::save_candidates::Params { rows: rows as u32, capacity: self.buffers.capacity as u32 },
             rows,
         );
     }
@@ -103,7 +103,7 @@ impl<E: Engine> Collision<E> {
         for (k, level) in targets.tree.levels.iter().enumerate() {
             level_first[k / 4][k % 4] = level.first as u32;
         }
-        let params = kernels::traverse::Params {
+        let params = kernels::traverse_tree::Params {
             queries: queries.tree.slots.len() as u32,
             count: queries.tree.vertex_count as u32,
             kind: kind as u32,
@@ -124,6 +124,6 @@ impl<E: Engine> Collision<E> {
             b.candidates,
             b.control,
         ];
-        recording.dispatch(&kernels::TRAVERSE, &buffers, params, queries.tree.slots.len());
+        recording.dispatch(&kernels::TRAVERSE_TREE, &buffers, params, queries.tree.slots.len());
     }
 }

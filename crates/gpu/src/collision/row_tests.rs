@@ -4,7 +4,7 @@
 use super::*;
 use crate::TwinEngine;
 use crate::bricks::LATTICES;
-use crate::kernels::color::COLORS;
+use crate::kernels::color_rows::COLORS;
 use crate::layout::{Bucket, Row};
 use bowknot_geometry::{BodyFilter, Topology};
 use std::collections::{HashMap, HashSet};

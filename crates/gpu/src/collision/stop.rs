@@ -1,7 +1,7 @@
 //! When a call ends, as the device decides it.
 
 use crate::grid::Grid;
-use crate::kernels::decide;
+use crate::kernels::stop_rule;
 
 /// When a call ends: of the steps of a submission, those after its end are not made. A state meets the rule if it meets
 /// all of its conditions. The host, which looks at the same numbers, may end a call after any other submission.
@@ -36,10 +36,10 @@ impl Stop {
     /// The rule in quanta, with the length [m] below which and the ratio of an edge to its limit above which the next
     /// step polishes. A length on the device is below a limit here if and only if it is below it in double precision,
     /// since the quantum is a power of two.
-    pub(super) fn params(&self, grid: &Grid, polishing: Option<(f64, f64)>) -> decide::Params {
+    pub(super) fn params(&self, grid: &Grid, polishing: Option<(f64, f64)>) -> stop_rule::Params {
         let below = |limit: f64| rounded_up(limit / grid.quantum());
         let (distance, stretch) = polishing.unwrap_or_default();
-        decide::Params {
+        stop_rule::Params {
             distance: below(self.distance),
             unhindered: below(self.unhindered),
             net_residual: below(self.net_residual),

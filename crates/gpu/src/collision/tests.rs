@@ -262,13 +262,13 @@ fn steps_that_are_submitted_together_have_the_same_bits() {
 struct Room {
     candidates: usize,
     old: usize,
-    picks: usize,
+    selected: usize,
     rows: usize,
 }
 
 impl Room {
     /// More than the sheets need.
-    const PLENTY: Self = Self { candidates: 40_000, old: 40_000, picks: 40_000, rows: 40_000 };
+    const PLENTY: Self = Self { candidates: 40_000, old: 40_000, selected: 40_000, rows: 40_000 };
 
     /// Makes buffers of that size, before anything is in them.
     fn give(self, collision: &mut Collision<TwinEngine>) {
@@ -278,14 +278,14 @@ impl Room {
             *buffer = engine.buffer("of that size", words).unwrap();
         };
         b.capacity = self.candidates;
-        (b.old_capacity, b.pick_capacity, b.row_capacity) = (self.old, self.picks, self.rows);
+        (b.old_capacity, b.selection_capacity, b.row_capacity) = (self.old, self.selected, self.rows);
         replace(&mut b.candidates, words::<Candidate>(self.candidates));
         replace(&mut b.separations, words::<crate::layout::Separation>(self.candidates));
         replace(&mut b.states, words::<PairState>(self.candidates));
         replace(&mut b.old_elements, self.old);
         replace(&mut b.old_states, words::<PairState>(self.old));
-        replace(&mut b.picks.starts, self.picks + 1);
-        replace(&mut b.picks.blocks, self.picks.div_ceil(kernels::COUNT.workgroup));
+        replace(&mut b.selection.starts, self.selected + 1);
+        replace(&mut b.selection.blocks, self.selected.div_ceil(kernels::SCAN_COUNTS.workgroup));
         replace(&mut b.rows.rows, words::<Row>(self.rows));
         replace(&mut b.rows.pairs, words::<Candidate>(self.rows));
         replace(&mut b.rows.order, self.rows);
@@ -295,7 +295,7 @@ impl Room {
 
     fn of(collision: &Collision<TwinEngine>) -> [usize; 4] {
         let b = &collision.buffers;
-        [b.capacity, b.old_capacity, b.pick_capacity, b.row_capacity]
+        [b.capacity, b.old_capacity, b.selection_capacity, b.row_capacity]
     }
 }
 
@@ -336,7 +336,7 @@ fn calls(room: Room) -> Calls {
         }
         collision.end().unwrap()
     });
-    let given = [room.candidates, room.old, room.picks, room.rows];
+    let given = [room.candidates, room.old, room.selected, room.rows];
     let now = Room::of(&collision);
     Calls { reports, ends, grew: [0, 1, 2, 3].map(|k| now[k] > given[k]), again, first }
 }
@@ -354,15 +354,15 @@ fn buffers_that_are_too_small_change_no_bits() {
     for (room, buffers) in [
         (Room { candidates: 64, ..plenty }, [true, false, false, false]),
         (Room { old: 64, ..plenty }, [false, true, false, false]),
-        (Room { picks: 64, ..plenty }, [false, false, true, false]),
+        (Room { selected: 64, ..plenty }, [false, false, true, false]),
         (Room { rows: 2, ..plenty }, [false, false, false, true]),
-        (Room { candidates: 64, old: 64, picks: 64, rows: 2 }, [true; 4]),
+        (Room { candidates: 64, old: 64, selected: 64, rows: 2 }, [true; 4]),
     ] {
         assert_eq!(agree(room).grew, buffers, "{room:?}");
     }
     // Just room for the first search: later ones find more.
     let candidates = with_room.first;
-    assert!(agree(Room { candidates, old: candidates, picks: candidates, ..plenty }).again > 0);
+    assert!(agree(Room { candidates, old: candidates, selected: candidates, ..plenty }).again > 0);
 }
 
 #[test]
@@ -603,25 +603,25 @@ fn what_lies_beyond_candidates_and_rows_is_not_touched() {
     collision.begin(&Call::toward(&target)).unwrap();
     // Buffers that are too small grow first.
     collision.step().unwrap();
-    // The end of the call would put the pairs in range where the picks are.
+    // The end of the call would put the pairs in range where the selection is.
     collision.before[0] = usize::MAX;
     for _ in 0..3 {
         let b = collision.buffers;
-        let buffers = [b.picks.starts, b.picks.blocks, b.rows.rows, b.rows.pairs, b.rows.order];
+        let buffers = [b.selection.starts, b.selection.blocks, b.rows.rows, b.rows.pairs, b.rows.order];
         let mut recording = Recording::default();
         for buffer in buffers {
             recording.write(buffer, &vec![NONE; collision.engine.words(buffer)]);
         }
         collision.engine.run(&recording, &[]).unwrap();
         let report = collision.step().unwrap();
-        // The search within the step may have found others than those that were picked from.
-        let all = collision.engine.words_of(b.picks.starts);
-        let picked = all.iter().rposition(|start| *start != NONE).unwrap();
-        assert!(picked + 200 < b.capacity, "{picked} of {}", b.capacity);
-        assert_eq!(all[picked] as usize, report.contact_rows);
+        // The search within the step may have found others than those that were selected from.
+        let all = collision.engine.words_of(b.selection.starts);
+        let selected = all.iter().rposition(|start| *start != NONE).unwrap();
+        assert!(selected + 200 < b.capacity, "{selected} of {}", b.capacity);
+        assert_eq!(all[selected] as usize, report.contact_rows);
         let used = [
-            picked + 1,
-            picked.div_ceil(256),
+            selected + 1,
+            selected.div_ceil(256),
             words::<Row>(report.contact_rows),
             words::<Candidate>(report.contact_rows),
             report.contact_rows,

@@ -130,17 +130,17 @@ impl DeviceTree {
     pub fn record_fit(&self, b: &Buffers, recording: &mut Recording) {
         let slots = self.tree.slots.len();
         recording.dispatch(
-            &kernels::BOXES,
+            &kernels::ELEMENT_BOXES,
             &[self.slots, b.balls, b.vertices, self.boxes, b.control],
-            kernels::boxes::Params { slots: slots as u32, count: self.tree.vertex_count as u32 },
+            kernels::element_boxes::Params { slots: slots as u32, count: self.tree.vertex_count as u32 },
             slots,
         );
         for levels in self.tree.levels.windows(2) {
             let [below, level] = [levels[0], levels[1]];
             recording.dispatch(
-                &kernels::REFIT,
+                &kernels::REFIT_BOXES,
                 &[self.boxes, b.control],
-                kernels::refit::Params {
+                kernels::refit_boxes::Params {
                     first: level.first as u32,
                     nodes: level.nodes as u32,
                     first_child: below.first as u32,

@@ -9,7 +9,7 @@ use crate::stages::Access;
 use bowknot_dynamics::DeviceWork;
 
 /// Bindings whose content depends on the order of the threads; no result does.
-const UNORDERED: [(&str, usize); 3] = [("sort", 3), ("color", 5), ("color", 6)];
+const UNORDERED: [(&str, usize); 3] = [("sort_rows", 3), ("color_rows", 5), ("color_rows", 6)];
 
 /// Largest relative difference of two floating-point numbers, and, relative to the largest number of a buffer, the largest
 /// absolute one: rounding, which sums and differences of a stage amplify.
@@ -18,13 +18,17 @@ const ABSOLUTE: f32 = 4e-6;
 
 /// Stages that amplify rounding, and the relative difference of their numbers: inverses of matrices do by their
 /// condition number.
-const AMPLIFYING: [(&str, f32); 2] = [("domain", 0.05), ("invert", 0.05)];
+const AMPLIFYING: [(&str, f32); 2] = [("invert_domains", 0.05), ("factor_diagonal", 0.05)];
 
 /// Stages that write displacements or widths of slabs, in steps of the grid, the smallest of these numbers that are meant, and by
 /// how many steps they may differ: where large terms cancel, what is left is their rounding. GPUs fuse products with sums,
 /// and divide by reciprocals.
-const STEPS_OF_THE_GRID: [(&str, f32, f32); 4] =
-    [("separate", 1e3, 128.0), ("sweep_rows", 0.0, 0.5), ("sweep_edges", 0.0, 0.5), ("rescale", 0.0, 0.5)];
+const STEPS_OF_THE_GRID: [(&str, f32, f32); 4] = [
+    ("separate", 1e3, 128.0),
+    ("sweep_rows", 0.0, 0.5),
+    ("sweep_edges", 0.0, 0.5),
+    ("coarse_rescale", 0.0, 0.5),
+];
 
 /// Integers above this can be coordinates, which may be rounded differently; the others are equal.
 const SMALLEST_COORDINATE: u32 = 1 << 16;

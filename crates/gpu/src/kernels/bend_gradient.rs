@@ -1,4 +1,4 @@
-// Written from `shader/bend_gradient.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/elements/bend_gradient.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -11,7 +11,7 @@ pub static STAGE: Stage = Stage {
         include_str!("../../shader/shared/elements.wgsl"),
         include_str!("../../shader/shared/gradients.wgsl"),
         include_str!("../../shader/shared/normal.wgsl"),
-        include_str!("../../shader/bend_gradient.wgsl"),
+        include_str!("../../shader/elements/bend_gradient.wgsl"),
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],

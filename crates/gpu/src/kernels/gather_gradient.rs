@@ -1,4 +1,4 @@
-// Written from `shader/gather_gradient.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/elements/gather_gradient.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -9,7 +9,7 @@ pub static STAGE: Stage = Stage {
     parts: &[
         include_str!("../../shader/shared/dispatch.wgsl"),
         include_str!("../../shader/shared/terms.wgsl"),
-        include_str!("../../shader/gather_gradient.wgsl"),
+        include_str!("../../shader/elements/gather_gradient.wgsl"),
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Read, Read, Read, Write],

@@ -1,4 +1,4 @@
-// Written from `shader/limit_groups.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/forward/limit_groups.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -9,7 +9,7 @@ pub static STAGE: Stage = Stage {
     parts: &[
         include_str!("../../shader/shared/dispatch.wgsl"),
         include_str!("../../shader/shared/types.wgsl"),
-        include_str!("../../shader/limit_groups.wgsl"),
+        include_str!("../../shader/forward/limit_groups.wgsl"),
     ],
     workgroup: 256,
     bindings: &[Read, Read, Write],

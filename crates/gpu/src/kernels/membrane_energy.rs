@@ -1,4 +1,4 @@
-// Written from `shader/membrane_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/elements/membrane_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -12,7 +12,7 @@ pub static STAGE: Stage = Stage {
         include_str!("../../shader/shared/parts.wgsl"),
         include_str!("../../shader/shared/energies.wgsl"),
         include_str!("../../shader/shared/triangle.wgsl"),
-        include_str!("../../shader/membrane_energy.wgsl"),
+        include_str!("../../shader/elements/membrane_energy.wgsl"),
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write],

@@ -1,4 +1,4 @@
-// Written from `shader/node_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/elements/node_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -10,7 +10,7 @@ pub static STAGE: Stage = Stage {
         include_str!("../../shader/shared/dispatch.wgsl"),
         include_str!("../../shader/shared/parts.wgsl"),
         include_str!("../../shader/shared/terms.wgsl"),
-        include_str!("../../shader/node_energy.wgsl"),
+        include_str!("../../shader/elements/node_energy.wgsl"),
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Read, Read, Write],

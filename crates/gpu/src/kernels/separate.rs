@@ -1,4 +1,4 @@
-// Written from `shader/separate.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/geometry/separate.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -12,7 +12,7 @@ pub static STAGE: Stage = Stage {
         include_str!("../../shader/shared/closest.wgsl"),
         include_str!("../../shader/shared/weights.wgsl"),
         include_str!("../../shader/shared/pair.wgsl"),
-        include_str!("../../shader/separate.wgsl"),
+        include_str!("../../shader/geometry/separate.wgsl"),
     ],
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Write, Write],

@@ -1,4 +1,4 @@
-// Written from `shader/strand_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/elements/strand_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -12,7 +12,7 @@ pub static STAGE: Stage = Stage {
         include_str!("../../shader/shared/parts.wgsl"),
         include_str!("../../shader/shared/energies.wgsl"),
         include_str!("../../shader/shared/strand.wgsl"),
-        include_str!("../../shader/strand_energy.wgsl"),
+        include_str!("../../shader/elements/strand_energy.wgsl"),
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write],

@@ -1,4 +1,4 @@
-// Written from `shader/strand_product.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/linear/strand_product.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -10,7 +10,7 @@ pub static STAGE: Stage = Stage {
         include_str!("../../shader/shared/dispatch.wgsl"),
         include_str!("../../shader/shared/linear.wgsl"),
         include_str!("../../shader/shared/strand.wgsl"),
-        include_str!("../../shader/strand_product.wgsl"),
+        include_str!("../../shader/linear/strand_product.wgsl"),
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write, Write],

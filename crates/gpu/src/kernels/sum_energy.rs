@@ -1,4 +1,4 @@
-// Written from `shader/sum_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/elements/sum_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -9,7 +9,7 @@ pub static STAGE: Stage = Stage {
     parts: &[
         include_str!("../../shader/shared/dispatch.wgsl"),
         include_str!("../../shader/shared/parts.wgsl"),
-        include_str!("../../shader/sum_energy.wgsl"),
+        include_str!("../../shader/elements/sum_energy.wgsl"),
     ],
     workgroup: 64,
     bindings: &[Read, Write],

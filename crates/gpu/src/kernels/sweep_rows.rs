@@ -1,4 +1,4 @@
-// Written from `shader/sweep_rows.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/backward/sweep_rows.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -9,7 +9,7 @@ pub static STAGE: Stage = Stage {
     parts: &[
         include_str!("../../shader/shared/dispatch.wgsl"),
         include_str!("../../shader/shared/types.wgsl"),
-        include_str!("../../shader/sweep_rows.wgsl"),
+        include_str!("../../shader/backward/sweep_rows.wgsl"),
     ],
     workgroup: 256,
     bindings: &[Read, Read, Read, Write, Write, Write],

@@ -1,4 +1,4 @@
-// Written from `shader/tetrahedron_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
+// Written from `shader/elements/tetrahedron_energy.wgsl` by `cargo xtask twins`: change that file, not this one.
 
 use crate::stages::Access::{Read, Write};
 use crate::stages::Stage;
@@ -13,7 +13,7 @@ pub static STAGE: Stage = Stage {
         include_str!("../../shader/shared/energies.wgsl"),
         include_str!("../../shader/shared/strain.wgsl"),
         include_str!("../../shader/shared/logarithm.wgsl"),
-        include_str!("../../shader/tetrahedron_energy.wgsl"),
+        include_str!("../../shader/elements/tetrahedron_energy.wgsl"),
     ],
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write],

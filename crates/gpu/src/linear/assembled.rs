@@ -109,9 +109,9 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         let slots = PATCH_SLOTS * sizes.patches;
         set.groups.write_springs(&mut self.engine, springs.springs, recording)?;
         recording.dispatch(
-            &kernels::INVERT,
+            &kernels::FACTOR_DIAGONAL,
             &[assembly.buffers.diagonal, buffers.springs, buffers.spring_words, buffers.slots],
-            kernels::invert::Params { slots: slots as u32, springs: sizes.springs as u32 },
+            kernels::factor_diagonal::Params { slots: slots as u32, springs: sizes.springs as u32 },
             slots,
         );
         set.groups.record(buffers, positions, sizes.springs > 0, quantum as f32, recording);

@@ -5,7 +5,7 @@ use crate::kernels;
 use bytemuck::{Pod, Zeroable};
 
 /// Threads of a workgroup that adds up sums.
-pub const THREADS: usize = kernels::descend::THREADS as usize;
+pub const THREADS: usize = kernels::cg_step::THREADS as usize;
 
 /// Most workgroups that write partial sums: the workgroups of the next stage each add them all, one per thread.
 pub const MOST_WORKGROUPS: usize = THREADS;

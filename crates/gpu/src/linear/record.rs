@@ -7,7 +7,7 @@ use crate::linear::THREADS;
 use crate::recording::{BufferId, Recording};
 
 /// Coarse levels of a dispatch: a group is the sum of at most 512 parts then, by 32 threads.
-const CLIMBED: usize = 4;
+const LEVELS_PER_DISPATCH: usize = 4;
 
 /// The dispatches of a system. With other buffers in place of those of the system they work on other vectors.
 #[derive(Clone, Debug)]
@@ -60,9 +60,9 @@ impl Recorder {
             );
         }
         recording.dispatch(
-            &kernels::MULTIPLY,
+            &kernels::MATRIX_PRODUCT,
             &[b.slices, b.words, b.spring_words, b.springs, b.direction, b.image, b.sums, b.progress],
-            kernels::multiply::Params {
+            kernels::matrix_product::Params {
                 nodes: s.nodes as u32,
                 springs: s.springs as u32,
                 workgroups: s.multiplying() as u32,
@@ -84,7 +84,8 @@ impl Recorder {
     }
 
     fn norm_count(&self) -> usize {
-        self.sizes.stepping() + self.sizes.levels.chunks(CLIMBED).map(climbing).sum::<usize>()
+        self.sizes.stepping()
+            + self.sizes.levels.chunks(LEVELS_PER_DISPATCH).map(coarse_workgroups).sum::<usize>()
     }
 
     /// The step, the preconditioner and the next direction. The present partial sums are those in half `present`.
@@ -96,9 +97,9 @@ impl Recorder {
         let (workgroups, norms) = (s.stepping() as u32, self.norm_count() as u32);
         let (all_present, all_next) = (present, next);
         recording.dispatch(
-            &kernels::DESCEND,
+            &kernels::CG_STEP,
             &[b.slots, b.domains, b.direction, b.image, b.solution, b.forces, b.sums, b.progress],
-            kernels::descend::Params {
+            kernels::cg_step::Params {
                 nodes: s.nodes as u32,
                 patches,
                 grouped,
@@ -113,13 +114,15 @@ impl Recorder {
         );
         (present, next) = (present + workgroups, next + workgroups);
         let firsts = s.first_groups();
-        for (first_level, levels) in (0..).step_by(CLIMBED).zip(s.levels.chunks(CLIMBED)) {
-            let mut params = kernels::climb::Params {
+        for (first_level, levels) in
+            (0..).step_by(LEVELS_PER_DISPATCH).zip(s.levels.chunks(LEVELS_PER_DISPATCH))
+        {
+            let mut params = kernels::schwarz_levels::Params {
                 groups: [0; 4],
                 firsts: [0; 4],
                 first_domains: [u32::MAX; 4],
                 domains: domains_of(levels) as u32,
-                workgroups: climbing(levels) as u32,
+                workgroups: coarse_workgroups(levels) as u32,
                 present,
                 next,
                 parents: firsts[first_level + 4],
@@ -131,7 +134,7 @@ impl Recorder {
                 params.first_domains[rise] = firsts[first_level + rise + 1] - grouped;
             }
             recording.dispatch(
-                &kernels::CLIMB,
+                &kernels::SCHWARZ_LEVELS,
                 &[b.coarse, b.links, b.forces, b.motions, b.sums, b.progress],
                 params,
                 THREADS * params.workgroups as usize,
@@ -139,9 +142,9 @@ impl Recorder {
             (present, next) = (present + params.workgroups, next + params.workgroups);
         }
         recording.dispatch(
-            &kernels::REDIRECT,
+            &kernels::CG_DIRECTION,
             &[b.slots, b.links, b.motions, b.image, b.direction, b.sums, b.progress],
-            kernels::redirect::Params {
+            kernels::cg_direction::Params {
                 patches,
                 grouped,
                 start,
@@ -162,7 +165,7 @@ fn domains_of(levels: &[usize]) -> usize {
     levels.iter().map(|groups| groups.div_ceil(CHILDREN)).sum()
 }
 
-/// Workgroups that climb over some levels.
-fn climbing(levels: &[usize]) -> usize {
+/// Workgroups of a dispatch over some coarse levels.
+fn coarse_workgroups(levels: &[usize]) -> usize {
     domains_of(levels).min(MOST_COARSE_WORKGROUPS)
 }

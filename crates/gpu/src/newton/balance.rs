@@ -17,9 +17,9 @@ impl Newton {
     pub fn record_momenta(&self, row_sums: BufferId, recording: &mut Recording) -> (BufferId, usize) {
         let v = &self.vectors;
         recording.dispatch(
-            &kernels::MOMENTA,
+            &kernels::BLOCK_MOMENTA,
             &[v.blocks, v.iterate, v.start, row_sums, v.step, v.totals],
-            kernels::momenta::Params { nodes: self.nodes as u32, quantum: self.grid.quantum as f32 },
+            kernels::block_momenta::Params { nodes: self.nodes as u32, quantum: self.grid.quantum as f32 },
             self.nodes,
         );
         (v.totals, 4 * self.blocks.count())
@@ -58,9 +58,9 @@ impl Newton {
         let v = &self.vectors;
         recording.write(v.translations, &self.blocks.spread(translations));
         recording.dispatch(
-            &kernels::TRANSLATE,
+            &kernels::TRANSLATE_BLOCKS,
             &[v.blocks, v.translations, v.free, v.step],
-            kernels::translate::Params { nodes: self.nodes as u32 },
+            kernels::translate_blocks::Params { nodes: self.nodes as u32 },
             self.nodes,
         );
     }
@@ -94,18 +94,18 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         // The gradient without known forces lies where the search direction goes.
         newton.record_copy(v.gradient, b.direction, &mut recording);
         recording.dispatch(
-            &kernels::SUBTRACT_KNOWN,
+            &kernels::SUBTRACT_KNOWN_FORCES,
             &[v.watched, v.forces, b.direction],
-            kernels::subtract_known::Params { count: forces as u32 },
+            kernels::subtract_known_forces::Params { count: forces as u32 },
             forces,
         );
         let opposed = Opposed { gradient: b.direction, counted: v.counted, springs: 0, imposes: false };
         newton.record_right_side(b, &opposed, &mut recording);
         newton.outside(recorder).record_residual(0, &mut recording);
         recording.dispatch(
-            &kernels::PRODUCTS,
+            &kernels::RESIDUAL_NORMS,
             &[v.blocks, b.solution, b.direction, v.totals],
-            kernels::products::Params { nodes: newton.nodes as u32 },
+            kernels::residual_norms::Params { nodes: newton.nodes as u32 },
             newton.nodes,
         );
         let read =

@@ -6,7 +6,7 @@ use crate::linear::MOST_WORKGROUPS;
 use bytemuck::{Pod, Zeroable};
 
 /// Nodes of which a workgroup adds up the momenta.
-pub const WINDOW: usize = kernels::momenta::WINDOW as usize;
+pub const WINDOW: usize = kernels::block_momenta::WINDOW as usize;
 
 /// How far a linear solve is. Norms are squared, and those of vectors times the factor.
 #[repr(C)]
@@ -60,6 +60,6 @@ pub const SUMS: usize = 8;
 /// Where the sums of guesses begin, after a number per workgroup.
 pub const FIRST_SUM: usize = MOST_WORKGROUPS;
 
-/// What `summarize` writes: p . b, then what is largest of the components of p, of the squared distances from the
+/// What `reduce_trial` writes: p . b, then what is largest of the components of p, of the squared distances from the
 /// iterate and from the start of the target, and of the coordinates.
 pub const SUMMARY: usize = 5;

@@ -11,7 +11,7 @@ use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{Trial, Watched};
 use std::mem::take;
 
-/// Largest coordinate of the grid, as a number: see `attempt.wgsl`.
+/// Largest coordinate of the grid, as a number: see `trial_positions.wgsl`.
 const REACH: f64 = ((1u32 << 29) - 1) as f64;
 
 /// Bits by which the grid may get coarser for a trial. A trial that would need more is 16 times as far as the state is
@@ -28,12 +28,12 @@ impl Newton {
     }
 
     /// Records the iterate plus that length of the step, which goes to `trial`.
-    pub fn record_attempt(&self, length: f64, trial: BufferId, recording: &mut Recording) {
+    pub fn record_trial_positions(&self, length: f64, trial: BufferId, recording: &mut Recording) {
         let (v, workgroups) = (&self.vectors, self.workgroups());
         recording.dispatch(
-            &kernels::ATTEMPT,
+            &kernels::TRIAL_POSITIONS,
             &[v.iterate, v.imposed, v.free, v.step, v.right_side, v.target_start, trial, v.sums],
-            kernels::attempt::Params {
+            kernels::trial_positions::Params {
                 nodes: self.nodes as u32,
                 workgroups: workgroups as u32,
                 imposed: u32::from(self.imposes),
@@ -46,7 +46,7 @@ impl Newton {
     /// Records the reference, and the trial at full length with its energies. Returns what to read.
     pub fn record_search(&self, recording: &mut Recording) -> Vec<(BufferId, usize)> {
         let v = &self.vectors;
-        self.record_attempt(0.0, v.reference, recording);
+        self.record_trial_positions(0.0, v.reference, recording);
         let seen = self.record_watched(v.reference, 4, v.seen_at_reference, recording);
         [vec![seen], self.record_trial(1.0, recording)].concat()
     }
@@ -86,12 +86,12 @@ impl Newton {
     /// the trial.
     fn record_trial(&self, length: f64, recording: &mut Recording) -> Vec<(BufferId, usize)> {
         let v = &self.vectors;
-        self.record_attempt(length, v.trial, recording);
+        self.record_trial_positions(length, v.trial, recording);
         let count = self.workgroups() as u32;
         recording.dispatch(
-            &kernels::SUMMARIZE,
+            &kernels::REDUCE_TRIAL,
             &[v.sums, v.summary],
-            kernels::summarize::Params { count },
+            kernels::reduce_trial::Params { count },
             1,
         );
         if length == 0.0 {
@@ -147,7 +147,7 @@ impl Newton {
     }
 }
 
-/// What `summarize` finds: p . b, and what is largest of the components of p [m], of the squared distances from the iterate and
+/// What `reduce_trial` finds: p . b, and what is largest of the components of p [m], of the squared distances from the iterate and
 /// from the start of the target [quanta^2], and of the coordinates.
 struct Summary {
     product: f64,

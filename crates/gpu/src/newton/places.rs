@@ -229,7 +229,7 @@ impl Newton {
         self.is_solved = false;
         self.momenta = None;
         self.change_trial();
-        self.record_attempt(0.0, self.vectors.trial, recording);
+        self.record_trial_positions(0.0, self.vectors.trial, recording);
         self.watched.iter().map(|&node| self.grid.position(self.start[node as usize])).collect()
     }
 
@@ -250,7 +250,12 @@ impl Newton {
     /// Records a copy of positions.
     pub fn record_copy(&self, from: BufferId, to: BufferId, recording: &mut Recording) {
         let words = 4 * self.nodes;
-        recording.dispatch(&kernels::COPY, &[from, to], kernels::copy::Params { words: words as u32 }, words);
+        recording.dispatch(
+            &kernels::COPY_WORDS,
+            &[from, to],
+            kernels::copy_words::Params { words: words as u32 },
+            words,
+        );
     }
 
     /// Records that entries of the watched nodes go where they are read; returns from where, and how many words.
@@ -263,9 +268,9 @@ impl Newton {
     ) -> (BufferId, usize) {
         let nodes = self.watched.len();
         recording.dispatch(
-            &kernels::GATHER,
+            &kernels::GATHER_NODES,
             &[self.vectors.watched, from, seen],
-            kernels::gather::Params { nodes: nodes as u32, width: width as u32 },
+            kernels::gather_nodes::Params { nodes: nodes as u32, width: width as u32 },
             nodes,
         );
         (seen, width * nodes)
@@ -276,9 +281,9 @@ impl Newton {
         let mut left = bits;
         while left > 0 {
             let shift = left.min(MOST_BITS);
-            let params = kernels::regrid::Params { nodes: self.nodes as u32, shift };
+            let params = kernels::regrid_positions::Params { nodes: self.nodes as u32, shift };
             for positions in self.vectors.positions() {
-                recording.dispatch(&kernels::REGRID, &[positions], params, self.nodes);
+                recording.dispatch(&kernels::REGRID_POSITIONS, &[positions], params, self.nodes);
             }
             for positions in [&mut self.start, &mut self.step_start] {
                 let coarser = |x: i32| (x + (1 << (shift - 1))) >> shift;

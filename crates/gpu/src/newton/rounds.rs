@@ -9,7 +9,7 @@ use super::search::Search;
 use super::solve::Opposed;
 use crate::engine::Engine;
 use crate::error::GpuError;
-use crate::kernels::settle;
+use crate::kernels::cg_tolerance;
 use crate::linear::{ConjugateGradients, Recorder};
 use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{AssemblySprings, CgInfo, NewtonSolve, SolveLimits};
@@ -180,10 +180,10 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         };
         newton.record_right_side(b, &opposed, &mut recording);
         newton.outside(recorder).record_residual(0, &mut recording);
-        newton.record_norm(recorder, settle::SCALE, 0, limits, &mut recording);
+        newton.record_norm(recorder, cg_tolerance::SCALE, 0, limits, &mut recording);
         newton.record_guesses(recorder, &mut recording);
         newton.outside(recorder).record_residual(0, &mut recording);
-        newton.record_norm(recorder, settle::START, 0, limits, &mut recording);
+        newton.record_norm(recorder, cg_tolerance::START, 0, limits, &mut recording);
         let before = newton.iterations.get(&newton.place);
         let mut rounds = Rounds {
             engine: &mut self.engine,

@@ -6,7 +6,7 @@
 use super::layout::{FIRST_SUM, Solve};
 use super::places::Newton;
 use crate::kernels;
-use crate::kernels::settle;
+use crate::kernels::cg_tolerance;
 use crate::linear::THREADS;
 use crate::linear::{Buffers, Progress, Recorder};
 use crate::recording::{BufferId, Recording};
@@ -43,9 +43,12 @@ impl Newton {
     pub fn record_imposed(&self, recorder: &Recorder, recording: &mut Recording) {
         let b = &recorder.buffers;
         recording.dispatch(
-            &kernels::IMPOSE,
+            &kernels::IMPOSED_DISPLACEMENTS,
             &[self.vectors.imposed, b.direction],
-            kernels::impose::Params { nodes: self.nodes as u32, quantum: self.grid.quantum as f32 },
+            kernels::imposed_displacements::Params {
+                nodes: self.nodes as u32,
+                quantum: self.grid.quantum as f32,
+            },
             self.nodes,
         );
         self.outside(recorder).record_image(recording);
@@ -55,9 +58,9 @@ impl Newton {
     pub fn record_right_side(&self, b: &Buffers, opposed: &Opposed, recording: &mut Recording) {
         let (v, workgroups) = (&self.vectors, self.workgroups());
         recording.dispatch(
-            &kernels::NEGATE,
+            &kernels::RIGHT_HAND_SIDE,
             &[opposed.gradient, b.image, b.springs, b.spring_words, opposed.counted, v.right_side, v.sums],
-            kernels::negate::Params {
+            kernels::right_hand_side::Params {
                 nodes: self.nodes as u32,
                 springs: opposed.springs as u32,
                 imposed: u32::from(opposed.imposes),
@@ -65,32 +68,35 @@ impl Newton {
             },
             THREADS * workgroups,
         );
-        let params =
-            settle::Params { mode: settle::FACTOR, count: workgroups as u32, ..settle::Params::default() };
-        self.record_settling(v.sums, b, params, recording);
-        self.record_residue(b, false, recording);
+        let params = cg_tolerance::Params {
+            mode: cg_tolerance::FACTOR,
+            count: workgroups as u32,
+            ..cg_tolerance::Params::default()
+        };
+        self.record_tolerance(v.sums, b, params, recording);
+        self.record_cg_residual(b, false, recording);
     }
 
     /// Records that conjugate gradients start from b, or from b less the image.
-    pub fn record_residue(&self, b: &Buffers, subtract: bool, recording: &mut Recording) {
+    pub fn record_cg_residual(&self, b: &Buffers, subtract: bool, recording: &mut Recording) {
         let v = &self.vectors;
         recording.dispatch(
-            &kernels::RESIDUE,
+            &kernels::CG_RESIDUAL,
             &[v.right_side, b.image, v.solve, b.direction],
-            kernels::residue::Params { nodes: self.nodes as u32, subtract: u32::from(subtract) },
+            kernels::cg_residual::Params { nodes: self.nodes as u32, subtract: u32::from(subtract) },
             self.nodes,
         );
     }
 
-    fn record_settling(
+    fn record_tolerance(
         &self,
         sums: BufferId,
         b: &Buffers,
-        params: settle::Params,
+        params: cg_tolerance::Params,
         recording: &mut Recording,
     ) {
         let v = &self.vectors;
-        recording.dispatch(&kernels::SETTLE, &[sums, v.solve, b.progress, v.ended], params, 1);
+        recording.dispatch(&kernels::CG_TOLERANCE, &[sums, v.solve, b.progress, v.ended], params, 1);
     }
 
     /// Records that the norms of step `k` of the solve become those of the mode.
@@ -103,7 +109,7 @@ impl Newton {
         recording: &mut Recording,
     ) {
         let norms = recorder.norms(k);
-        let params = settle::Params {
+        let params = cg_tolerance::Params {
             mode,
             first: norms.start as u32,
             count: norms.len() as u32,
@@ -111,7 +117,7 @@ impl Newton {
             own_tolerance: (limits.own_tolerance * limits.own_tolerance) as f32,
             min_scale: limits.min_scale as f32,
         };
-        self.record_settling(recorder.buffers.sums, &recorder.buffers, params, recording);
+        self.record_tolerance(recorder.buffers.sums, &recorder.buffers, params, recording);
     }
 
     /// Records the combination of guesses with the least energy, where the step starts, and its residual.
@@ -120,9 +126,9 @@ impl Newton {
         let (nodes, workgroups) = (self.nodes as u32, self.workgroups() as u32);
         let count = 1 + u32::from(self.has_last);
         recording.dispatch(
-            &kernels::GUESS,
+            &kernels::INITIAL_GUESSES,
             &[v.iterate, v.inertial, v.last, v.free, b.direction, v.second],
-            kernels::guess::Params { nodes, count, quantum: self.grid.quantum as f32 },
+            kernels::initial_guesses::Params { nodes, count, quantum: self.grid.quantum as f32 },
             self.nodes,
         );
         let mut images = self.outside(recorder);
@@ -134,15 +140,15 @@ impl Newton {
         }
         let first = FIRST_SUM as u32;
         recording.dispatch(
-            &kernels::CORRELATE,
+            &kernels::GUESS_PRODUCTS,
             &[b.direction, b.image, v.second, v.second_image, v.right_side, v.sums],
-            kernels::correlate::Params { nodes, count, workgroups, first },
+            kernels::guess_products::Params { nodes, count, workgroups, first },
             THREADS * self.workgroups(),
         );
         recording.dispatch(
-            &kernels::COMBINE,
+            &kernels::COMBINE_GUESSES,
             &[b.image, v.second, v.second_image, v.right_side, v.sums, v.solve, b.direction, v.step],
-            kernels::combine::Params { nodes, count, workgroups, first },
+            kernels::combine_guesses::Params { nodes, count, workgroups, first },
             self.nodes,
         );
     }
@@ -159,17 +165,17 @@ impl Newton {
     ) {
         let (v, b) = (&self.vectors, &recorder.buffers);
         recording.dispatch(
-            &kernels::ACCUMULATE,
+            &kernels::ADD_SOLUTION,
             &[b.solution, b.progress, v.ended, v.solve, v.step],
-            kernels::accumulate::Params { nodes: self.nodes as u32, last: u32::from(is_last) },
+            kernels::add_solution::Params { nodes: self.nodes as u32, last: u32::from(is_last) },
             self.nodes,
         );
         let outside = self.outside(recorder);
         let mut image = outside.clone();
         image.buffers.direction = v.step;
         image.record_image(recording);
-        self.record_residue(b, true, recording);
+        self.record_cg_residual(b, true, recording);
         outside.record_residual(k + 1, recording);
-        self.record_norm(recorder, settle::ROUND, k + 1, limits, recording);
+        self.record_norm(recorder, cg_tolerance::ROUND, k + 1, limits, recording);
     }
 }

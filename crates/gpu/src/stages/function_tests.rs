@@ -1,6 +1,6 @@
 //! Functions of the shaders beside double precision, by their twins.
 
-use crate::kernels::{frame, tetrahedron_energy};
+use crate::kernels::{group_frames, tetrahedron_energy};
 use nalgebra::Matrix3;
 
 #[test]
@@ -29,9 +29,10 @@ fn eigenvalues_are_filtered_as_in_double_precision() {
             // What is definite stays as it is, and near that rounding decides.
             continue;
         }
-        eigen.eigenvalues.apply(|value| *value = f64::from(frame::twin::filtered(*value as f32)));
+        eigen.eigenvalues.apply(|value| *value = f64::from(group_frames::twin::filtered(*value as f32)));
         let expected = eigen.recompose();
-        let found = frame::twin::filtered_matrix(std::array::from_fn(|k| matrix[(k / 3, k % 3)] as f32));
+        let found =
+            group_frames::twin::filtered_matrix(std::array::from_fn(|k| matrix[(k / 3, k % 3)] as f32));
         for (k, found) in found.into_iter().enumerate() {
             let error = (f64::from(found) - expected[(k / 3, k % 3)]).abs();
             assert!(error < 4e-6 * matrix.abs().max().max(1.0), "{case}: {error:e}");

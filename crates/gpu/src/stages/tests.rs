@@ -81,14 +81,14 @@ fn structs_of_linear_solves_lie_alike_on_both_sides() {
         offsets!(linear::layout::Spring: nodes, weights, hessian),
         offsets!(linear::layout::Progress: moving, iterations, goal),
     ];
-    assert_structs(&module_of("descend"), &structs);
+    assert_structs(&module_of("cg_step"), &structs);
 }
 
 #[test]
 fn structs_of_newtons_method_lie_alike_on_both_sides() {
     let solve = offsets!(newton::layout::Solve: factor, inverse, scale, before, norm, goal, reached, iterations, ended);
     let progress = offsets!(linear::layout::Progress: moving, iterations, goal);
-    assert_structs(&module_of("settle"), &[solve, progress]);
+    assert_structs(&module_of("cg_tolerance"), &[solve, progress]);
 }
 
 #[test]
@@ -99,13 +99,19 @@ fn structs_of_assembly_lie_alike_on_both_sides() {
         offsets!(assembly::layout::Tetrahedron: nodes, gradients, volume, lambda, mu, law, viscous_lambda, viscous_mu, padding),
         offsets!(assembly::layout::ElementParams: elements, first_block, absolute, rate, quantum),
     ];
-    assert_structs(&module_of("membrane"), &structs);
+    assert_structs(&module_of("membrane_hessian"), &structs);
     let strand = offsets!(assembly::layout::Strand: nodes, rest, inverse_lengths, stiffness, damping);
     let curvature = offsets!(assembly::layout::Curvature: along, axial, across);
-    assert_structs(&module_of("strand"), &[strand, curvature]);
-    assert_structs(&module_of("frame"), &[offsets!(assembly::layout::Frame: center, size, moment, held)]);
-    assert_structs(&module_of("coarsen"), &[offsets!(assembly::layout::Part: block, a, b, both)]);
-    assert_structs(&module_of("assemble"), &[offsets!(assembly::layout::Entry: at, first, count, bending)]);
+    assert_structs(&module_of("strand_hessian"), &[strand, curvature]);
+    assert_structs(
+        &module_of("group_frames"),
+        &[offsets!(assembly::layout::Frame: center, size, moment, held)],
+    );
+    assert_structs(&module_of("coarsen_blocks"), &[offsets!(assembly::layout::Part: block, a, b, both)]);
+    assert_structs(
+        &module_of("assemble_blocks"),
+        &[offsets!(assembly::layout::Entry: at, first, count, bending)],
+    );
 }
 
 #[test]
@@ -177,7 +183,7 @@ fn sums_by_one_workgroup_make_one_round() {
         })
     }
 
-    for stage in ["total", "start_buckets"] {
+    for stage in ["scan_blocks", "scan_buckets"] {
         let module = module_of(stage);
         assert!(!waits(&module, &module.entry_points[0].function.body, false), "{stage}");
         let scan = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some("sum_before"));
@@ -186,7 +192,7 @@ fn sums_by_one_workgroup_make_one_round() {
 }
 
 /// The stages that may add to `control` once per turn of a loop: a body has one workgroup there.
-const ONCE_PER_TURN: [&str; 1] = ["balance"];
+const ONCE_PER_TURN: [&str; 1] = ["body_residuals"];
 
 /// Atomic operations on one word wait for each other, so workgroups reduce first what their threads find.
 #[test]
