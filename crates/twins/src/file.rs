@@ -143,7 +143,7 @@ impl Kernel {
                 continue;
             };
             let ty = types::name(&self.module, constant.ty);
-            let _ = writeln!(out, "pub const {name}: {ty} = {};", crate::body::literal(*literal));
+            let _ = writeln!(out, "pub const {name}: {ty} = {};", crate::math::literal(*literal));
         }
         out.push('\n');
     }

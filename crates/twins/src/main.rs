@@ -6,7 +6,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `kernel`, `file` | a kernel; its file |
-//! | `body` | that of a function |
+//! | `body` | that of a function: its expressions, places, statements, and regions between waits |
 //! | `scopes` | where its variables are declared |
 //! | `uniform` | what is the same for all threads of a workgroup |
 //! | `flow` | walks over statements |
@@ -94,7 +94,8 @@ fn stem(path: &Path) -> String {
 
 /// Folder and name of each kernel. A name says which one it is without its folder.
 fn kernels(shaders: &Path) -> Vec<(String, String)> {
-    let folders = entries(shaders).into_iter().filter(|path| path.is_dir() && !path.ends_with(SHARED));
+    let folders = entries(shaders).into_iter().filter(|path| !path.ends_with(SHARED));
+    let folders = folders.inspect(|path| assert!(path.is_dir(), "{}: in no folder", path.display()));
     let of_folder = |folder: PathBuf| {
         let files = entries(&folder).into_iter();
         files

@@ -1,7 +1,9 @@
 //! Operators and functions of the shaders in Rust. Those of vectors are those of their components.
 
 use crate::types;
-use naga::{BinaryOperator, Expression, Handle, MathFunction, Scalar, ScalarKind, TypeInner, UnaryOperator};
+use naga::{
+    BinaryOperator, Expression, Handle, Literal, MathFunction, Scalar, ScalarKind, TypeInner, UnaryOperator,
+};
 
 /// The expressions that an expression uses.
 pub fn operands(expression: &Expression) -> Vec<Handle<Expression>> {
@@ -155,4 +157,17 @@ pub fn cast(inner: &TypeInner, kind: ScalarKind, converts: bool, x: &str) -> Str
         _ => format!("({x} as {to})"),
     };
     if matches!(inner, TypeInner::Vector { .. }) { format!("{x}.map(|x| {})", of("x")) } else { of(x) }
+}
+
+/// A number.
+pub fn literal(literal: Literal) -> String {
+    match literal {
+        Literal::F32(x) if x.is_sign_negative() => format!("({x:?}f32)"),
+        Literal::F32(x) => format!("{x:?}f32"),
+        Literal::U32(x) => format!("{x}u32"),
+        Literal::I32(x) if x < 0 => format!("({x}i32)"),
+        Literal::I32(x) => format!("{x}i32"),
+        Literal::Bool(x) => x.to_string(),
+        other => panic!("{other:?} has no twin"),
+    }
 }
