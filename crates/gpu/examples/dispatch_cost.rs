@@ -1,4 +1,5 @@
-//! What a dispatch, a wait and an atomic cost on the first device: the constants that decide how stages are cut.
+//! What a dispatch, a wait and an atomic cost on the first device: the constants that decide how stages are
+//! cut.
 #![allow(clippy::print_stdout, reason = "an example")]
 
 use std::time::Instant;

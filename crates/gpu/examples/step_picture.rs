@@ -35,7 +35,8 @@ fn positions() -> Vec<Point> {
     sheet(0.1).chain(sheet(0.2)).collect()
 }
 
-/// The sheets over the ground, with friction and limits on the lengths of edges, so that every stage takes part.
+/// The sheets over the ground, with friction and limits on the lengths of edges, so that every stage takes
+/// part.
 fn scene(engine: RecordingEngine) -> Result<Collision<RecordingEngine>, Box<dyn std::error::Error>> {
     let corner = |first: usize, k: usize| (first + k) as u32;
     let mut triangles = Vec::new();

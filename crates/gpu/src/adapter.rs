@@ -4,7 +4,8 @@ use crate::error::GpuError;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
-/// Storage buffers that a stage binds at most, and threads of a workgroup: every device that follows WebGPU has as many.
+/// Storage buffers that a stage binds at most, and threads of a workgroup: every device that follows WebGPU
+/// has as many.
 const STORAGE_BUFFERS: u32 = 8;
 const WORKGROUP_THREADS: u32 = 256;
 
@@ -22,9 +23,9 @@ impl Adapter {
     /// All adapters of this machine, GPUs before software drivers. Their order is the order of their numbers.
     pub fn all() -> Vec<Self> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        // Numbers of workgroups come from the host or are 0. The check of indirect dispatches would be one more
-        // dispatch each; without it no shader may ask for the number of workgroups, which DirectX 12 does not know
-        // then.
+        // Numbers of workgroups come from the host or are 0. The check of indirect dispatches would be one
+        // more dispatch each; without it no shader may ask for the number of workgroups, which DirectX 12
+        // does not know then.
         descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = wgpu::Instance::new(descriptor);
         let adapters = wait(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
@@ -90,7 +91,8 @@ impl Adapter {
         (!missing.is_empty()).then(|| missing.join(", "))
     }
 
-    /// Opens the device with the largest buffers that it allows, and with time stamps and immediates where it has them.
+    /// Opens the device with the largest buffers that it allows, and with time stamps and immediates where it
+    /// has them.
     pub(crate) fn open(&self) -> Result<(wgpu::Device, wgpu::Queue), String> {
         let has = self.adapter.limits();
         let mut required_features =

@@ -2,8 +2,8 @@
 
 use bowknot_geometry::Topology;
 
-/// The list. Entry v, and entry `edges_first` + e, is where the vertices around vertex v and edge e begin; the next entry is
-/// where they end. From `triangles_first` on stand three edges of each triangle.
+/// The list. Entry v, and entry `edges_first` + e, is where the vertices around vertex v and edge e begin;
+/// the next entry is where they end. From `triangles_first` on stand three edges of each triangle.
 #[derive(Clone, Debug)]
 pub(crate) struct Adjacency {
     pub words: Vec<u32>,

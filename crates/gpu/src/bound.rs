@@ -3,7 +3,8 @@
 use bytemuck::Pod;
 use std::cell::{Ref, RefCell, RefMut};
 
-/// The buffers of a dispatch, in the order of the stage's bindings, its parameters, and how many workgroups it has.
+/// The buffers of a dispatch, in the order of the stage's bindings, its parameters, and how many workgroups
+/// it has.
 #[derive(Clone, Copy)]
 pub(crate) struct Bound<'a> {
     buffers: &'a [&'a RefCell<Vec<u32>>],

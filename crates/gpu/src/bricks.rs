@@ -1,13 +1,13 @@
 //! Contact rows by bricks of space, so that many workgroups sweep them at a time.
 //!
-//! Four lattices of cubes of side S are shifted against each other by S / 4 along each axis. A row belongs to the first
-//! lattice of which one cube, its brick, holds all of its vertices that move, as they are at the start of the step.
-//! Bricks of one lattice share no point, so rows of different bricks share no vertex that moves, and all bricks of a
-//! lattice are swept at the same time.
+//! Four lattices of cubes of side S are shifted against each other by S / 4 along each axis. A row belongs to
+//! the first lattice of which one cube, its brick, holds all of its vertices that move, as they are at the
+//! start of the step. Bricks of one lattice share no point, so rows of different bricks share no vertex that
+//! moves, and all bricks of a lattice are swept at the same time.
 //!
-//! A row whose vertices lie within S / 4 along each axis has a brick: the faces of all lattices across an axis are S / 4
-//! apart, so at most one of them cuts the row, and three axes rule out at most three of the four lattices. Rows that
-//! have no brick come last, by one workgroup.
+//! A row whose vertices lie within S / 4 along each axis has a brick: the faces of all lattices across an
+//! axis are S / 4 apart, so at most one of them cuts the row, and three axes rule out at most three of the
+//! four lattices. Rows that have no brick come last, by one workgroup.
 //!
 //! A bucket holds the rows of all bricks of a lattice with the same hash.
 
@@ -17,7 +17,8 @@ use std::ops::Range;
 /// Lattices: as many as there are axes, and one more.
 pub(crate) const LATTICES: usize = 4;
 
-/// Side of a brick, at least, in mean edge lengths of the vertices that move: rows extend over one or two of them.
+/// Side of a brick, at least, in mean edge lengths of the vertices that move: rows extend over one or two of
+/// them.
 const SIDE: f32 = 8.0;
 
 /// Most buckets of a lattice: as many workgroups fill a large device.
@@ -44,8 +45,8 @@ impl Bricks {
         let side = (f64::from(SIDE) * mean).max(1.0);
         let buckets = count / vertices_per_bucket.max(1);
         Self {
-            // At least 4, for a quarter of it is a number of quanta; coordinates are below 2^30, and sums with three
-            // quarters of it must be below 2^31.
+            // At least 4, for a quarter of it is a number of quanta; coordinates are below 2^30, and sums
+            // with three quarters of it must be below 2^31.
             shift: (side.log2().ceil() as u32).clamp(2, 28),
             buckets: if buckets < FEWEST_BUCKETS {
                 0

@@ -1,15 +1,16 @@
 //! Steps toward a target that nothing passes through: search, backward step and forward step on an engine.
 //!
 //! Positions, targets, trust regions and pairs stay on the device. A step is the list of dispatches that
-//! [`Collision::record_step`] writes; the host submits several of them at once, reads [`Control`] and a report per step
-//! alone, and grows buffers that were too small. A step with a buffer that is too small moves nothing, those after it
-//! are not made, and it is made again.
+//! [`Collision::record_step`] writes; the host submits several of them at once, reads [`Control`] and a
+//! report per step alone, and grows buffers that were too small. A step with a buffer that is too small moves
+//! nothing, those after it are not made, and it is made again.
 //!
-//! A device binds so many candidates and no more. Where a search finds more, the rest of the call goes on with trust
-//! regions of half the size and paths of half the length, as often as it takes. Safety does not depend on their size: a
-//! path stays within the trust region of its vertex, and all pairs whose trust regions, enlarged by their contact ranges,
-//! overlap are candidates. Smaller ones leave fewer pairs and are left sooner, so there are more steps and searches. Pairs
-//! within contact range are candidates in any case. If these alone are too many, the call ends with an error.
+//! A device binds so many candidates and no more. Where a search finds more, the rest of the call goes on
+//! with trust regions of half the size and paths of half the length, as often as it takes. Safety does not
+//! depend on their size: a path stays within the trust region of its vertex, and all pairs whose trust
+//! regions, enlarged by their contact ranges, overlap are candidates. Smaller ones leave fewer pairs and are
+//! left sooner, so there are more steps and searches. Pairs within contact range are candidates in any case.
+//! If these alone are too many, the call ends with an error.
 
 mod buffers;
 mod carried;
@@ -82,11 +83,11 @@ pub struct Settings {
     pub cluster_sweeps: usize,
     /// How often a sweep goes over each bucket of contact rows before the next one.
     pub bucket_sweeps: usize,
-    /// Vertices that move by bucket of contact rows, about. A workgroup sweeps a bucket; scenes of fewer than eight
-    /// buckets have one.
+    /// Vertices that move by bucket of contact rows, about. A workgroup sweeps a bucket; scenes of fewer than
+    /// eight buckets have one.
     pub bucket_vertices: usize,
-    /// Most sweeps while the last step left less than `polish_distance` and stretched an edge beyond `polish_stretch`. The
-    /// first such step of a call makes `sweeps`, each of the next ones twice as many.
+    /// Most sweeps while the last step left less than `polish_distance` and stretched an edge beyond
+    /// `polish_stretch`. The first such step of a call makes `sweeps`, each of the next ones twice as many.
     pub polish_sweeps: usize,
     /// Remaining distance of a vertex [m].
     pub polish_distance: f64,
@@ -104,11 +105,13 @@ pub struct Settings {
     pub active: f64,
     /// Whether only contacts get rows, and pairs that are merely close guard a part of their gap.
     pub contacts_only: bool,
-    /// Distance in the desired one below which the target knows a contact of the vertices that a [`Call`] says.
+    /// Distance in the desired one below which the target knows a contact of the vertices that a [`Call`]
+    /// says.
     pub known: f64,
     /// Share of its gap that the row of such a contact guards.
     pub guarded: f64,
-    /// Smallest distance that such a row asks for, in the way from the minimum separation to the desired distance.
+    /// Smallest distance that such a row asks for, in the way from the minimum separation to the desired
+    /// distance.
     pub guarded_floor: f64,
     /// Factor on the stretch limits of edges that the target knows.
     pub guarded_stretch: f64,
@@ -160,24 +163,26 @@ pub struct Call<'a> {
     pub target: &'a [Point],
     /// By how much pairs that are closer than they should be open at most in the call [m].
     pub growth: f64,
-    /// Where the vertices were at the start of the time step, from where slip counts [m]. Empty: the present positions.
+    /// Where the vertices were at the start of the time step, from where slip counts [m]. Empty: the present
+    /// positions.
     pub slip_start: &'a [Point],
-    /// Vertices whose contacts the target knows: pairs with one of them that are near when they become candidates guard
-    /// only a part of their gap. Empty: none.
+    /// Vertices whose contacts the target knows: pairs with one of them that are near when they become
+    /// candidates guard only a part of their gap. Empty: none.
     pub known: &'a [bool],
-    /// What pairs carry at the start, in any order: the first step sweeps on from it. Pairs without an entry carry nothing;
-    /// entries of pairs that do not press, or that the first search does not find, are left out.
+    /// What pairs carry at the start, in any order: the first step sweeps on from it. Pairs without an entry
+    /// carry nothing; entries of pairs that do not press, or that the first search does not find, are left
+    /// out.
     pub carried: &'a [Carried],
-    /// Edges that may be longer than their limits, and how long [m]. Entries below the limit, and of edges without one,
-    /// change nothing.
+    /// Edges that may be longer than their limits, and how long [m]. Entries below the limit, and of edges
+    /// without one, change nothing.
     pub yielding: &'a [([u32; 2], f64)],
     /// When the call ends.
     pub stop: Stop,
 }
 
 impl<'a> Call<'a> {
-    /// Toward a target that knows no contacts, with pairs that carry nothing. Pairs may open at once, slip counts from
-    /// here, and the host alone ends the call.
+    /// Toward a target that knows no contacts, with pairs that carry nothing. Pairs may open at once, slip
+    /// counts from here, and the host alone ends the call.
     pub fn toward(target: &'a [Point]) -> Self {
         Self {
             target,
@@ -257,8 +262,8 @@ pub struct End {
     pub aims: Vec<Point>,
     /// The contact rows of the last step.
     pub rows: Vec<ContactRow>,
-    /// Pairs among which are all that are within their contact range, the sum of their margins, at the positions; sorted.
-    /// None if no step and no search of the call has looked for them.
+    /// Pairs among which are all that are within their contact range, the sum of their margins, at the
+    /// positions; sorted. None if no step and no search of the call has looked for them.
     pub near: Option<Vec<Candidate>>,
 }
 
@@ -280,7 +285,8 @@ pub struct Collision<E> {
     bricks: Bricks,
     /// Where the edges and the triangles begin in the adjacency.
     adjacency_starts: [u32; 2],
-    /// Whether any contact may have friction, and whether vertices of bodies that are no obstacles are prescribed.
+    /// Whether any contact may have friction, and whether vertices of bodies that are no obstacles are
+    /// prescribed.
     frictional: bool,
     has_pins: bool,
     /// Whether edges of the last call yielded.
@@ -301,13 +307,13 @@ pub struct Collision<E> {
     polished: usize,
     /// Number of steps that a submission is likely to make, of those that do not polish and of those that do.
     expected_steps: [usize; 2],
-    /// Dispatches of a step that can be left out, of one that does not polish and of one that does; None before they are
-    /// counted.
+    /// Dispatches of a step that can be left out, of one that does not polish and of one that does; None
+    /// before they are counted.
     step_dispatches: [Option<usize>; 2],
     /// Steps since the call began or the device last halted a submission.
     steps_in_a_row: usize,
-    /// Factor on the longest travel of a step and on the sizes of trust regions, which halves where the device does not
-    /// bind all candidates. Each call begins with 1, so that it depends on its start alone.
+    /// Factor on the longest travel of a step and on the sizes of trust regions, which halves where the
+    /// device does not bind all candidates. Each call begins with 1, so that it depends on its start alone.
     travel: f32,
     /// Whether the factor has changed, and trust regions have not: all of them are new.
     shrunk: bool,
@@ -317,8 +323,8 @@ pub struct Collision<E> {
     again: bool,
     /// What runs before the next steps, or before the next results are read.
     pending: Recording,
-    /// Whether the candidates are those of the present positions: all pairs that could meet within the trust regions, in
-    /// which the vertices are.
+    /// Whether the candidates are those of the present positions: all pairs that could meet within the trust
+    /// regions, in which the vertices are.
     listed: bool,
 }
 
@@ -333,8 +339,8 @@ struct StepLengths {
 }
 
 impl<E: Engine> Collision<E> {
-    /// Prepares the scene of `model` at `positions` [m], where no two elements intersect; `rest` are the rest positions
-    /// [m].
+    /// Prepares the scene of `model` at `positions` [m], where no two elements intersect; `rest` are the rest
+    /// positions [m].
     ///
     /// # Errors
     /// No grid has room for the scene; the device has no memory; wrong lengths.
@@ -363,7 +369,8 @@ impl<E: Engine> Collision<E> {
         rest: &[Point],
         lengths: &Lengths<'_>,
     ) -> Result<Grid, CollisionError> {
-        // Trust regions and boxes must fit as well: no radius is above an edge length, none of a box above two margins more.
+        // Trust regions and boxes must fit as well: no radius is above an edge length, none of a box above
+        // two margins more.
         let lengths_of_vertices = lengths.edges.iter().chain(lengths.margins);
         let largest = lengths_of_vertices.fold(0.0, |largest: f64, length| largest.max(*length));
         let room = extent(positions).max(extent(rest)).max(4.0 * largest);
@@ -492,9 +499,9 @@ impl<E: Engine> Collision<E> {
         })
     }
 
-    /// Puts the vertices at other positions [m], where no two elements intersect. Each goes to the nearest point of the
-    /// grid; returns these points [m]. They may be far from where the scene was prepared, but steps then take longer: trees keep the order of the
-    /// elements ([`Self::reorder`]).
+    /// Puts the vertices at other positions [m], where no two elements intersect. Each goes to the nearest
+    /// point of the grid; returns these points [m]. They may be far from where the scene was prepared, but
+    /// steps then take longer: trees keep the order of the elements ([`Self::reorder`]).
     ///
     /// # Errors
     /// A wrong length; a position outside of the grid; the device failed.
@@ -507,8 +514,9 @@ impl<E: Engine> Collision<E> {
         Ok(collected(&on_grid, |&x| grid.position(x)))
     }
 
-    /// Orders the elements of the `model` in space anew, by any positions that are typical of the scene from now on [m]. To be
-    /// called between two calls: candidates have another order afterwards. Bodies that mix cost time otherwise.
+    /// Orders the elements of the `model` in space anew, by any positions that are typical of the scene from
+    /// now on [m]. To be called between two calls: candidates have another order afterwards. Bodies that mix
+    /// cost time otherwise.
     ///
     /// # Errors
     /// A wrong length; positions that no grid holds; the device failed.
@@ -600,7 +608,8 @@ impl<E: Engine> Collision<E> {
         Ok(changes)
     }
 
-    /// Seconds of the phases of the steps since the last call, between time stamps of the device; None if it has none.
+    /// Seconds of the phases of the steps since the last call, between time stamps of the device; None if it
+    /// has none.
     pub fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
         self.engine.take_phase_seconds()
     }

@@ -1,8 +1,9 @@
-//! Limits on the lengths of edges, divided on the host into clusters: a workgroup sweeps a cluster in its own memory.
+//! Limits on the lengths of edges, divided on the host into clusters: a workgroup sweeps a cluster in its own
+//! memory.
 //!
-//! Clusters of a round share no vertex that moves, so a round is one dispatch. The first round holds the edges inside
-//! of parts of up to [`MOST_VERTICES`] vertices, the second those inside of parts of what is left between them, and so
-//! on. Edges of one color of a cluster share no vertex that moves.
+//! Clusters of a round share no vertex that moves, so a round is one dispatch. The first round holds the
+//! edges inside of parts of up to [`MOST_VERTICES`] vertices, the second those inside of parts of what is
+//! left between them, and so on. Edges of one color of a cluster share no vertex that moves.
 
 use crate::grid::Grid;
 use crate::layout::{EdgeCluster, EdgeLimit};
@@ -13,8 +14,8 @@ use std::ops::Range;
 /// Vertices of a cluster that move, at most: as many as the shader has room for.
 pub(crate) const MOST_VERTICES: usize = 256;
 
-/// Shares of the vertices on one side of a cut, of which the one that cuts the fewest edges is taken. Cuts of later
-/// rounds must lie elsewhere than those of the rounds before, which are in the middle.
+/// Shares of the vertices on one side of a cut, of which the one that cuts the fewest edges is taken. Cuts of
+/// later rounds must lie elsewhere than those of the rounds before, which are in the middle.
 const CUTS: [f64; 6] = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26];
 
 /// An edge with its largest length [m].
@@ -217,8 +218,8 @@ fn connected(edges: &[Limited], vertices: usize, moves: &impl Fn(u32) -> bool) -
     groups
 }
 
-/// Divides vertices by cuts until each part is small enough, and visits the parts. The first round cuts in the middle
-/// of the longest side, the others where the fewest edges are.
+/// Divides vertices by cuts until each part is small enough, and visits the parts. The first round cuts in
+/// the middle of the longest side, the others where the fewest edges are.
 fn divide(
     vertices: &mut [u32],
     edges: Vec<[u32; 2]>,
@@ -273,7 +274,8 @@ mod tests {
     use super::*;
     use std::collections::HashSet;
 
-    /// A sheet of n x n vertices with a fan of long edges around vertex 0, which does not move, and loose edges.
+    /// A sheet of n x n vertices with a fan of long edges around vertex 0, which does not move, and loose
+    /// edges.
     fn edges(n: u32) -> (Vec<[u32; 2]>, Vec<Point>) {
         let mut edges: Vec<[u32; 2]> = (1..20).map(|v| [0, v * n / 2 + 3]).collect();
         for k in (0..n * n).filter(|k| k % n != n - 1) {

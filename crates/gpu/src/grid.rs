@@ -5,9 +5,9 @@
 //! - a step is a sum of integers, the same on every device, whatever order a compiler gives to additions;
 //! - every state is a state in `f64` too, bit by bit, and can be judged exactly.
 //!
-//! With single precision in place of it, coordinates would have a rounding error of 2^-24 of their distance from the
-//! origin; here it is 2^-30 of the size of the scene, and a difference of near positions, converted to `f32`, keeps
-//! 24 bits of its own.
+//! With single precision in place of it, coordinates would have a rounding error of 2^-24 of their distance
+//! from the origin; here it is 2^-30 of the size of the scene, and a difference of near positions, converted
+//! to `f32`, keeps 24 bits of its own.
 
 use crate::parallel::{all, folded};
 use bowknot_geometry::{Point, Vector};
@@ -18,8 +18,8 @@ pub type GridPoint = [i32; 3];
 /// Coordinates stay below this: differences then stay below 2^30.
 const MAX_COORDINATE: f64 = (1 << 29) as f64;
 
-/// Largest exponent of a quantum, and the smallest: all multiples of them below 2^31 are numbers in `f64` and, as
-/// lengths, in `f32`.
+/// Largest exponent of a quantum, and the smallest: all multiples of them below 2^31 are numbers in `f64`
+/// and, as lengths, in `f32`.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -60..=30;
 
 /// A grid of positions.
@@ -63,8 +63,8 @@ impl Grid {
     /// How many it has where the scene is small enough. More would leave less room for what moves.
     const WANTED_RESOLUTION: f64 = 16384.0;
 
-    /// A grid that has room for `positions` [m] with `room` [m] around them. It resolves lengths of `smallest` [m] by
-    /// 16384 quanta, or by fewer in a large scene, but by 256 at least.
+    /// A grid that has room for `positions` [m] with `room` [m] around them. It resolves lengths of
+    /// `smallest` [m] by 16384 quanta, or by fewer in a large scene, but by 256 at least.
     ///
     /// # Errors
     /// A position that is not finite; a scene too large for `smallest`.
@@ -97,9 +97,10 @@ impl Grid {
         all(positions, |x| other.nearest(x).is_some()).then_some(other)
     }
 
-    /// The grid for a call in which vertices move from `positions` to `ends` [m] at the farthest: this one if it has
-    /// room, else one that is shifted to there, else a coarser one of both kinds that still resolves `smallest` [m].
-    /// Shifts are multiples of an eighth of the width, so that the same grid serves for a while. None if none has room.
+    /// The grid for a call in which vertices move from `positions` to `ends` [m] at the farthest: this one if
+    /// it has room, else one that is shifted to there, else a coarser one of both kinds that still resolves
+    /// `smallest` [m]. Shifts are multiples of an eighth of the width, so that the same grid serves for a
+    /// while. None if none has room.
     pub fn for_motion(&self, positions: &[Point], ends: &[Point], smallest: f64) -> Option<Self> {
         let (_, middle) = bounds([positions, ends]);
         let has_room = |grid: &Self| grid.has_room(positions) && all(ends, |x| grid.nearest(x).is_some());
@@ -132,15 +133,16 @@ impl Grid {
         inside.then(|| [0, 1, 2].map(|k| scaled[k].round_ties_even() as i32))
     }
 
-    /// Whether all positions [m] are so far from the border that half of the grid's width is free around them.
+    /// Whether all positions [m] are so far from the border that half of the grid's width is free around
+    /// them.
     pub fn has_room(&self, positions: &[Point]) -> bool {
         let scaled = |x: &Point| ((x - self.origin) / self.quantum).amax();
         // What is not a number has no room.
         all(positions, |x| scaled(x) < 0.5 * MAX_COORDINATE)
     }
 
-    /// The position of the grid that is nearest; outside of the grid each coordinate is moved to its border. The origin
-    /// takes the place of coordinates that are no numbers.
+    /// The position of the grid that is nearest; outside of the grid each coordinate is moved to its border.
+    /// The origin takes the place of coordinates that are no numbers.
     pub(crate) fn nearest_inside(&self, x: &Point) -> GridPoint {
         let scaled = (x - self.origin) / self.quantum;
         [0, 1, 2]

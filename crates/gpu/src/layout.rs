@@ -1,5 +1,5 @@
-//! The data that host, kernels and twins share, as they lie in buffers. A test compares every struct with what the
-//! shaders declare (`stages/tests.rs`).
+//! The data that host, kernels and twins share, as they lie in buffers. A test compares every struct with
+//! what the shaders declare (`stages/tests.rs`).
 //!
 //! Lengths are in quanta of the [grid](crate::Grid), so that no number has a unit.
 
@@ -162,8 +162,8 @@ pub struct Separation {
     pub normal: [f32; 3],
     /// Certified lower bound of the width of the slab between both sides; 0 or less if nothing is certified.
     pub width: f32,
-    /// Weights in the closest points: of the last two vertices of a pair with a triangle, of the last vertices of both
-    /// sides otherwise. The weights of a side sum to 1.
+    /// Weights in the closest points: of the last two vertices of a pair with a triangle, of the last
+    /// vertices of both sides otherwise. The weights of a side sum to 1.
     pub weights: [f32; 2],
     /// Computed distance of the closest points.
     pub distance: f32,
@@ -284,8 +284,8 @@ pub struct EdgeLimit {
     pub b: u32,
     /// In the present call [quanta].
     pub limit: f32,
-    /// Places of a (lower half) and b in the list of vertices of the cluster; [`EdgeLimit::FIXED`] for a vertex that
-    /// does not move.
+    /// Places of a (lower half) and b in the list of vertices of the cluster; [`EdgeLimit::FIXED`] for a
+    /// vertex that does not move.
     pub places: u32,
     /// Multiplier: the force that pulls a toward b, times -1 on a.
     pub multiplier: [f32; 3],
@@ -367,16 +367,17 @@ pub struct Control {
     pub overflow: u32,
     /// Pairs that nothing certifies, and whose vertices wanted to move.
     pub frozen: u32,
-    /// Bits of the largest remaining distance of a vertex that is not prescribed, of a prescribed one that no pair
-    /// holds back, of any prescribed one, and of the longest move of any vertex and of one that is not prescribed. They
-    /// are `f32` of at least 0, so their bits are ordered as they are.
+    /// Bits of the largest remaining distance of a vertex that is not prescribed, of a prescribed one that no
+    /// pair holds back, of any prescribed one, and of the longest move of any vertex and of one that is not
+    /// prescribed. They are `f32` of at least 0, so their bits are ordered as they are.
     pub free_remaining: u32,
     pub unhindered_lag: u32,
     pub lag: u32,
     pub largest_move: u32,
     pub free_move: u32,
-    /// Bits of the largest remaining distance of a vertex that no pair holds back, of the largest net residual of a body,
-    /// of the largest mean residual, and of the largest ratio of an edge's length to its limit.
+    /// Bits of the largest remaining distance of a vertex that no pair holds back, of the largest net
+    /// residual of a body, of the largest mean residual, and of the largest ratio of an edge's length to its
+    /// limit.
     pub unhindered: u32,
     pub net_residual: u32,
     pub mean_residual: u32,
@@ -387,8 +388,9 @@ pub struct Control {
     pub candidates: u32,
     /// Number of contact rows.
     pub rows: u32,
-    /// 1 if the steps that a submission still has are not made: the call may end, or a buffer was too small, or the
-    /// next step makes another number of sweeps; [`Control::HALTED_BY_SEARCH`], [`Control::HALTED_BY_ROWS`].
+    /// 1 if the steps that a submission still has are not made: the call may end, or a buffer was too small,
+    /// or the next step makes another number of sweeps; [`Control::HALTED_BY_SEARCH`],
+    /// [`Control::HALTED_BY_ROWS`].
     pub halted: u32,
     /// Steps made by a submission.
     pub steps: u32,

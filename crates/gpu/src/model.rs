@@ -15,13 +15,13 @@ pub struct Lengths<'a> {
     pub deltas: &'a [f64],
     /// The same of contacts with half-spaces that have no thickness. May be empty: as with others like it.
     pub half_space_deltas: &'a [f64],
-    /// Thickness of the body of each vertex, a guaranteed minimum separation; none where it is not a number. May be
-    /// empty: no body has any.
+    /// Thickness of the body of each vertex, a guaranteed minimum separation; none where it is not a number.
+    /// May be empty: no body has any.
     pub thicknesses: &'a [f64],
     /// Thickness of each half-space, likewise.
     pub half_space_thicknesses: &'a [f64],
-    /// No step makes a gap between bodies without a thickness smaller than this, nor smaller than a tenth of the pair's
-    /// desired distance if that is less.
+    /// No step makes a gap between bodies without a thickness smaller than this, nor smaller than a tenth of
+    /// the pair's desired distance if that is less.
     pub min_separation: f64,
     /// Largest length of each edge of the topology, infinite for no limit. May be empty: no edge has one.
     pub edge_limits: &'a [f64],
@@ -32,18 +32,18 @@ pub struct Lengths<'a> {
 pub struct Constraints<'a> {
     /// Whether each vertex is prescribed, those of obstacles included.
     pub prescribed: &'a [bool],
-    /// The group of each vertex, [`NONE`] for none: its vertices move by one fraction of their displacements. Each
-    /// obstacle has one of its own in any case.
+    /// The group of each vertex, [`NONE`] for none: its vertices move by one fraction of their displacements.
+    /// Each obstacle has one of its own in any case.
     pub groups: &'a [u32],
     /// Mass of each vertex, above 0 for those that are not prescribed. May be empty: all have the same.
     pub masses: &'a [f64],
-    /// Coefficient of friction of the body of each vertex; of a contact counts the geometric mean of both sides'. May be
-    /// empty: there is no friction.
+    /// Coefficient of friction of the body of each vertex; of a contact counts the geometric mean of both
+    /// sides'. May be empty: there is no friction.
     pub frictions: &'a [f64],
     /// Coefficient of friction of each half-space. May be empty.
     pub half_space_frictions: &'a [f64],
-    /// Coefficients of friction that two sides have with each other instead, each pair once. A side is a body, or a
-    /// half-space, whose numbers follow those of the bodies. May be empty.
+    /// Coefficients of friction that two sides have with each other instead, each pair once. A side is a
+    /// body, or a half-space, whose numbers follow those of the bodies. May be empty.
     pub pair_frictions: &'a [([u32; 2], f64)],
 }
 
@@ -118,8 +118,8 @@ pub(crate) fn pair_frictions(constraints: &Constraints<'_>) -> Vec<PairFriction>
     pairs
 }
 
-/// The half-spaces. Their points are those of the planes that are nearest to the middle of the grid; a plane outside of
-/// the grid, which nothing touches, is moved to a place inside of it that is as good.
+/// The half-spaces. Their points are those of the planes that are nearest to the middle of the grid; a plane
+/// outside of the grid, which nothing touches, is moved to a place inside of it that is as good.
 pub(crate) fn planes(model: &CollisionModel, grid: &Grid) -> Vec<Plane> {
     let middle = grid.position([0; 3]);
     let farthest = f64::from(1 << 28) * grid.quantum();

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 /// Entries that one task computes.
 const CHUNK: usize = 4096;
 
-/// What `of` makes of each entry, in parallel if there are many: a parallel loop pays for the way to its threads.
+/// What `of` makes of each entry, in parallel if there are many: a parallel loop pays for the way to its
+/// threads.
 pub fn collected<T: Sync, R: Send>(entries: &[T], of: impl Fn(&T) -> R + Send + Sync) -> Vec<R> {
     match entries.len() {
         ..=CHUNK => entries.iter().map(of).collect(),
@@ -21,7 +22,8 @@ pub fn collected_numbers<R: Send>(count: usize, of: impl Fn(usize) -> R + Send +
     }
 }
 
-/// What `join` makes of all that `of` makes of the entries, and of `start`, in any order and `start` any number of times.
+/// What `join` makes of all that `of` makes of the entries, and of `start`, in any order and `start` any
+/// number of times.
 pub fn folded<T: Sync, R: Copy + Send + Sync>(
     entries: &[T],
     start: R,

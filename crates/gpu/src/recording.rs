@@ -47,15 +47,16 @@ pub(crate) struct Dispatch {
     pub params: Vec<u32>,
     /// Number of threads that have work.
     pub threads: usize,
-    /// Where its number of workgroups is if a stage may take it away: a buffer with three words per dispatch, and the
-    /// place in it.
+    /// Where its number of workgroups is if a stage may take it away: a buffer with three words per dispatch,
+    /// and the place in it.
     pub arguments: Option<(BufferId, usize)>,
     /// What it is for, if that is measured.
     pub phase: Option<Phase>,
 }
 
 impl Dispatch {
-    /// Workgroups for all threads. Kernels go on with strides, so any number of workgroups does all of the work.
+    /// Workgroups for all threads. Kernels go on with strides, so any number of workgroups does all of the
+    /// work.
     pub fn workgroups(&self) -> usize {
         self.threads.div_ceil(self.stage.workgroup).min(MAX_WORKGROUPS)
     }
@@ -121,10 +122,10 @@ impl Recording {
         }
     }
 
-    /// Adds what another recording does, if a stage before it leaves it: the numbers of workgroups of its dispatches
-    /// are in `arguments` when they run, and a dispatch without workgroups does nothing. Dispatches that bind that
-    /// buffer themselves run in any case. Returns the number of dispatches with arguments so far, of which there were
-    /// `before`.
+    /// Adds what another recording does, if a stage before it leaves it: the numbers of workgroups of its
+    /// dispatches are in `arguments` when they run, and a dispatch without workgroups does nothing.
+    /// Dispatches that bind that buffer themselves run in any case. Returns the number of dispatches with
+    /// arguments so far, of which there were `before`.
     pub(crate) fn append_conditional(&mut self, other: &Self, arguments: BufferId, before: usize) -> usize {
         let mut place = before;
         for command in &other.commands {

@@ -1,8 +1,8 @@
 //! What a stage is: a kernel with its place in the table of all [kernels](crate::kernels).
 //!
-//! Binding 0 of a kernel holds the parameters of a dispatch. Threads go on with strides, so that any number of workgroups up
-//! to [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work; only those that scan
-//! depend on the size of a workgroup.
+//! Binding 0 of a kernel holds the parameters of a dispatch. Threads go on with strides, so that any number
+//! of workgroups up to [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work;
+//! only those that scan depend on the size of a workgroup.
 
 #[cfg(feature = "twins")]
 use crate::bound::Bound;

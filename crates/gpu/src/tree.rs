@@ -1,9 +1,9 @@
-//! Implicit trees of boxes with eight children per node: the host orders the elements in space, the device fits the
-//! boxes.
+//! Implicit trees of boxes with eight children per node: the host orders the elements in space, the device
+//! fits the boxes.
 //!
-//! Children of node i of a level are 8 i .. 8 i + 7 of the level below, without pointers. Each level is padded to a
-//! multiple of 8 with empty boxes, the top level has one group. When elements move, the order stays; an order that is
-//! old costs time but no pair.
+//! Children of node i of a level are 8 i .. 8 i + 7 of the level below, without pointers. Each level is
+//! padded to a multiple of 8 with empty boxes, the top level has one group. When elements move, the order
+//! stays; an order that is old costs time but no pair.
 
 use crate::grid::GridPoint;
 use crate::layout::{BRANCHING, MAX_LEVELS, NONE, NodeBox, Slot};
@@ -75,8 +75,8 @@ fn padded(nodes: usize) -> usize {
     nodes.next_multiple_of(BRANCHING)
 }
 
-/// Orders elements so that groups of 8, 64, 512, .. are compact: halves along the longest side, at a multiple of the
-/// largest power of 8 below their number.
+/// Orders elements so that groups of 8, 64, 512, .. are compact: halves along the longest side, at a multiple
+/// of the largest power of 8 below their number.
 fn bisect(order: &mut [(usize, [i64; 3])]) {
     let count = order.len();
     if count <= BRANCHING {

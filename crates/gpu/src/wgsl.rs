@@ -1,7 +1,7 @@
 //! What twins are written with: values of the shaders' language in Rust, and how they lie in buffers.
 //!
-//! Vectors are arrays, matrices are arrays of columns. Integers wrap, as they do there. Nothing is fused or reordered, so twins
-//! compute the same bits everywhere.
+//! Vectors are arrays, matrices are arrays of columns. Integers wrap, as they do there. Nothing is fused or
+//! reordered, so twins compute the same bits everywhere.
 
 pub(crate) use crate::bound::Bound;
 

@@ -231,7 +231,8 @@ fn random_vector(random: &mut fastrand::Rng) -> Vector {
     Vector::from_fn(|_, _| 2.0 * random.f64() - 1.0)
 }
 
-/// A system of a strongly deformed body far from the origin, with wind, springs, and vertices that are held and moved.
+/// A system of a strongly deformed body far from the origin, with wind, springs, and vertices that are held
+/// and moved.
 fn target<B: NewtonBackend + 'static>(case: &Case, backend: B) -> Result<Dynamics, StepError> {
     let mut params = DynamicsParams::default();
     params.newton.preconditioner = PreconditionerKind::TwoLevel;
@@ -383,13 +384,14 @@ fn fall(
     (x, iterations)
 }
 
-/// Forces have a noise of 1e-7 of stiffness times length, which moves what only inertia holds: a sheet out of its plane.
-/// Linear solves end at 1e-4, as by default, or at 1e-5 where that is above their rounding.
+/// Forces have a noise of 1e-7 of stiffness times length, which moves what only inertia holds: a sheet out of
+/// its plane. Linear solves end at 1e-4, as by default, or at 1e-5 where that is above their rounding.
 #[test]
 fn time_steps_are_those_of_the_cpu_up_to_single_precision() {
     for (k, case) in cases().into_iter().enumerate() {
-        // Of curled strands, the norm of block-Jacobi sees residuals that are rounding: they are far stiffer than soft.
-        // The sewn sheet buckles one way or the other: with two preconditioners on the CPU it ends 5 mm apart.
+        // Of curled strands, the norm of block-Jacobi sees residuals that are rounding: they are far stiffer
+        // than soft. The sewn sheet buckles one way or the other: with two preconditioners on the CPU it ends
+        // 5 mm apart.
         let has_groups = (k % 2 == 1 || case.name.starts_with("curled")) && case.name != "sewn";
         let kind = if has_groups { PreconditionerKind::TwoLevel } else { PreconditionerKind::BlockJacobi };
         let (tolerance, most) = match case.name {
@@ -397,7 +399,8 @@ fn time_steps_are_those_of_the_cpu_up_to_single_precision() {
             "sewn" => (1e-5, 2e-3),
             _ => (1e-4, 1e-3),
         };
-        // Near the solution, a straight strand is as far from it as positions are rounded: its decrease is not that of the model.
+        // Near the solution, a straight strand is as far from it as positions are rounded: its decrease is
+        // not that of the model.
         let more = if case.name.contains("strands") { 2 } else { 4 };
         let on_twins = |targets: usize| {
             let backend = Assembling::new(TwinEngine::new());

@@ -1,9 +1,9 @@
 //! The twin of one function.
 //!
-//! A function in which threads wait for each other is run by all threads of a workgroup together, region by region: what lies
-//! between two waits is a loop over the threads. Variables, and values that a later region uses, are arrays with an
-//! element for each thread. The language wants control flow around a wait to be the same for all threads, and the twin
-//! asserts it. Other functions are run by one thread.
+//! A function in which threads wait for each other is run by all threads of a workgroup together, region by
+//! region: what lies between two waits is a loop over the threads. Variables, and values that a later region
+//! uses, are arrays with an element for each thread. The language wants control flow around a wait to be the
+//! same for all threads, and the twin asserts it. Other functions are run by one thread.
 
 mod expressions;
 mod places;

@@ -1,7 +1,7 @@
 //! The twins of the kernels, written from the text of the shaders.
 //!
-//! `cargo xtask twins` writes `crates/gpu/src/kernels`; a test fails where that isn't what the shaders say. This crate does not
-//! depend on the one that it writes for, which may not compile before.
+//! `cargo xtask twins` writes `crates/gpu/src/kernels`; a test fails where that isn't what the shaders say.
+//! This crate does not depend on the one that it writes for, which may not compile before.
 //!
 //! | module | holds |
 //! |---|---|

@@ -1,5 +1,6 @@
-//! Where variables can be declared: before the first statement that uses them, in the innermost block that has all their uses,
-//! if each run of that block sets them before it reads them. A thread needs no place for them elsewhere.
+//! Where variables can be declared: before the first statement that uses them, in the innermost block that
+//! has all their uses, if each run of that block sets them before it reads them. A thread needs no place for
+//! them elsewhere.
 
 use naga::{Block, Expression, Function, Handle, LocalVariable, Statement};
 use std::collections::HashMap;

@@ -73,7 +73,8 @@ pub fn common(kernel: &Kernel, function: &Function, is_entry: bool) -> HashSet<H
     }
 }
 
-/// Variables that a block, which all threads run together, sets to values of each thread, or in the region of one.
+/// Variables that a block, which all threads run together, sets to values of each thread, or in the region of
+/// one.
 fn set_apart(
     kernel: &Kernel,
     function: &Function,

@@ -1,13 +1,14 @@
 // Parts: types.
 //
-// Subtracts from a row's target distance what its prescribed vertices lack. Where they end nearer than desired, the free
-// vertices of their side would have to make up for it. With a closest point near a prescribed vertex they have a short
-// lever, and would have to go far. It runs after unconstrained_minimum.wgsl, which says where prescribed vertices go.
+// Subtracts from a row's target distance what its prescribed vertices lack. Where they end nearer than
+// desired, the free vertices of their side would have to make up for it. With a closest point near a
+// prescribed vertex they have a short lever, and would have to go far. It runs after
+// unconstrained_minimum.wgsl, which says where prescribed vertices go.
 //
-// Rounding. The lever can be as short as rounding makes a weight that should be 0, and a row that is off by a part of a
-// quantum then throws its free vertices. So a row asks for less by what rounding can do to it: with u = 2^-24 and the
-// largest coordinate L of places and ways, the value, what is lacking and the sums of a sweep are each off by less than
-// 4 u L.
+// Rounding. The lever can be as short as rounding makes a weight that should be 0, and a row that is off by a
+// part of a quantum then throws its free vertices. So a row asks for less by what rounding can do to it: with
+// u = 2^-24 and the largest coordinate L of places and ways, the value, what is lacking and the sums of a
+// sweep are each off by less than 4 u L.
 
 struct Params {
     capacity: u32,
@@ -25,8 +26,9 @@ struct Params {
 const ROUNDING: f32 = 9.5367431640625e-7;
 const ON_GRID: f32 = 4.0;
 
-// By how much the prescribed vertices from `first` to `end` of a side are nearer to the opposite point, in the direction
-// `outward`, than the row asks for, times their weights; and rounding. 0 if the whole side is prescribed, or nothing of it.
+// By how much the prescribed vertices from `first` to `end` of a side are nearer to the opposite point, in
+// the direction `outward`, than the row asks for, times their weights; and rounding. 0 if the whole side is
+// prescribed, or nothing of it.
 fn lacking_of(
     first: u32, end: u32, opposite: vec3<f32>, outward: vec3<f32>, wanted: f32, rounding: f32,
     places: ptr<function, array<vec4<f32>, 4>>, weights: ptr<function, array<f32, 4>>

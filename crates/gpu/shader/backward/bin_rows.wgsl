@@ -1,7 +1,7 @@
 // Parts: types.
 //
-// Divides the rows by bricks of space (bricks.rs): the bucket of each row, how many rows each bucket has, and the diagonal
-// of each row for the step that solves it.
+// Divides the rows by bricks of space (bricks.rs): the bucket of each row, how many rows each bucket has, and
+// the diagonal of each row for the step that solves it.
 
 struct Params {
     capacity: u32,

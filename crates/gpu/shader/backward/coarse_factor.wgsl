@@ -1,7 +1,8 @@
 // Parts: types.
 //
-// The factor of the coarse correction: the maximizer of the dual along the ray of all multipliers, within bounds. The sums
-// of the blocks, one per thread, are added by halves. Bounds and their reasons: `CoarseCorrection` (crates/twoway/src/coarse.rs).
+// The factor of the coarse correction: the maximizer of the dual along the ray of all multipliers, within
+// bounds. The sums of the blocks, one per thread, are added by halves. Bounds and their reasons:
+// `CoarseCorrection` (crates/twoway/src/coarse.rs).
 
 struct Params {
     blocks: u32,

@@ -1,9 +1,9 @@
 // Parts: types.
 //
-// Sums for the coarse correction, by block, in a fixed order: over rows and edges of the product of multiplier and slack,
-// and over vertices of |u - u'|^2 / w, with the displacement u, that without any multiplier u', and the inverse weight w.
-// The sums are those of `CoarseCorrection` on the CPU (crates/twoway/src/coarse.rs). One workgroup per block; its threads
-// go on with strides.
+// Sums for the coarse correction, by block, in a fixed order: over rows and edges of the product of
+// multiplier and slack, and over vertices of |u - u'|^2 / w, with the displacement u, that without any
+// multiplier u', and the inverse weight w. The sums are those of `CoarseCorrection` on the CPU
+// (crates/twoway/src/coarse.rs). One workgroup per block; its threads go on with strides.
 
 struct Params {
     blocks: u32,
@@ -27,8 +27,8 @@ const SLIDES: f32 = 0.999999;
 
 var<workgroup> shared_sums: array<vec2<f32>, 256>;
 
-// A sticking contact is the equation slip = 0; a sliding one is solved by any slip opposite to its multiplier and does
-// not count.
+// A sticking contact is the equation slip = 0; a sliding one is solved by any slip opposite to its multiplier
+// and does not count.
 fn of_row(r: u32) -> f32 {
     let row = rows[r];
     if row.multiplier <= 0.0 {

@@ -1,17 +1,18 @@
 // Parts: types.
 //
-// Colors the rows of each bucket and sorts them by color. A workgroup takes a bucket at a time; the buckets of a dispatch
-// share no vertex that moves.
+// Colors the rows of each bucket and sorts them by color. A workgroup takes a bucket at a time; the buckets
+// of a dispatch share no vertex that moves.
 //
-// In a round each row without a color claims its vertices that move, and the smallest key holds a vertex. A row that holds
-// all of its vertices takes the first color that none of them has in use. So rows of one color share no vertex that moves,
-// and the colors depend on the keys alone, not on the order of the threads. In each round the smallest key of all is among
-// those that settle.
+// In a round each row without a color claims its vertices that move, and the smallest key holds a vertex. A
+// row that holds all of its vertices takes the first color that none of them has in use. So rows of one color
+// share no vertex that moves, and the colors depend on the keys alone, not on the order of the threads. In
+// each round the smallest key of all is among those that settle.
 //
-// A vertex that many rows share, as one of a coarse sheet on a fine one, settles one of them per round. Where a round settles
-// less than a 64th of those that wait, the others get no color. They are swept at once: each vertex is split into as many parts as it has of them,
-// with an equal share of its mass each, and moves by the mean of its parts (Tonge et al. 2012). So the diagonals of these rows
-// count the inverse mass of a vertex as often as it has such rows.
+// A vertex that many rows share, as one of a coarse sheet on a fine one, settles one of them per round. Where
+// a round settles less than a 64th of those that wait, the others get no color. They are swept at once: each
+// vertex is split into as many parts as it has of them, with an equal share of its mass each, and moves by
+// the mean of its parts (Tonge et al. 2012). So the diagonals of these rows count the inverse mass of a
+// vertex as often as it has such rows.
 
 struct Params {
     // Buckets of the dispatch.
@@ -30,7 +31,8 @@ struct Params {
 // The rows that wait, and room for those of the next round.
 @group(0) @binding(6) var<storage, read_write> waiting: array<u32>;
 @group(0) @binding(7) var<storage, read_write> order: array<u32>;
-// Where each color of a bucket ends in the order, from the place where the bucket begins: it has no more colors than rows.
+// Where each color of a bucket ends in the order, from the place where the bucket begins: it has no more
+// colors than rows.
 @group(0) @binding(8) var<storage, read_write> color_ends: array<u32>;
 
 // One in so many rows that wait must settle in a round.

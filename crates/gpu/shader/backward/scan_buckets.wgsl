@@ -1,7 +1,7 @@
 // Parts: types, scan.
 //
-// Where the rows of each bucket begin and end in their order: sums of the numbers of rows. One workgroup: each thread has
-// buckets that follow each other.
+// Where the rows of each bucket begin and end in their order: sums of the numbers of rows. One workgroup:
+// each thread has buckets that follow each other.
 
 struct Params {
     buckets: u32,

@@ -1,7 +1,7 @@
 // Parts: types.
 //
-// Where each vertex goes in this step: the position and its displacement, on the grid. Without displacements that are
-// bounded numbers it stays where it is.
+// Where each vertex goes in this step: the position and its displacement, on the grid. Without displacements
+// that are bounded numbers it stays where it is.
 
 struct Params {
     vertices: u32,
@@ -14,8 +14,8 @@ struct Params {
 @group(0) @binding(2) var<storage, read> targets: array<vec4<i32>>;
 @group(0) @binding(3) var<storage, read> displacements: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> aims: array<vec4<i32>>;
-// Last displacement, and the factor on the proximal weight. A displacement that reverses oscillates about the position: the
-// weight is too small there.
+// Last displacement, and the factor on the proximal weight. A displacement that reverses oscillates about the
+// position: the weight is too small there.
 @group(0) @binding(5) var<storage, read_write> swings: array<vec4<f32>>;
 
 // Coordinates of the grid stay below this.

@@ -1,7 +1,7 @@
 // Parts: types.
 //
-// Sorts the rows by bucket; their order within a bucket comes later. The numbers of rows count down to zero, from where
-// the next step begins.
+// Sorts the rows by bucket; their order within a bucket comes later. The numbers of rows count down to zero,
+// from where the next step begins.
 
 struct Params {
     capacity: u32,

@@ -1,17 +1,20 @@
 // Parts: types.
 //
-// A sweep over the edges of the clusters of a round, which share no vertex that moves. A workgroup takes a cluster at a
-// time, with the displacements of its vertices in its own memory, and waits between the colors of its edges: edges of
-// one color share no vertex that moves. The ball |x_a - x_b + u_a - u_b| <= L is convex, so nothing is linearized: each
-// edge is projected onto its own ball, with the multiplier that it had taken back first (Boyle and Dykstra 1986).
+// A sweep over the edges of the clusters of a round, which share no vertex that moves. A workgroup takes a
+// cluster at a time, with the displacements of its vertices in its own memory, and waits between the colors
+// of its edges: edges of one color share no vertex that moves. The ball |x_a - x_b + u_a - u_b| <= L is
+// convex, so nothing is linearized: each edge is projected onto its own ball, with the multiplier that it had
+// taken back first (Boyle and Dykstra 1986).
 //
-// Where a cluster has up to four edges per thread, as clusters of cloth do, each thread keeps its edges and their colors, so
-// that the memory of the device is read before the first sweep and written after the last one. A thread has at most one
-// edge of a color: no color has more edges than the cluster has vertices that move, and these are no more than threads.
-// Each edge has a variable of its own, since an array that is indexed by a variable lies in the memory of the device.
+// Where a cluster has up to four edges per thread, as clusters of cloth do, each thread keeps its edges and
+// their colors, so that the memory of the device is read before the first sweep and written after the last
+// one. A thread has at most one edge of a color: no color has more edges than the cluster has vertices that
+// move, and these are no more than threads. Each edge has a variable of its own, since an array that is
+// indexed by a variable lies in the memory of the device.
 //
-// First all threads look whether any edge would change. Where none is too long or pulls, as in most clusters of most bodies,
-// or where sweeps have come to their end in single precision, a sweep changes nothing and is left out.
+// First all threads look whether any edge would change. Where none is too long or pulls, as in most clusters
+// of most bodies, or where sweeps have come to their end in single precision, a sweep changes nothing and is
+// left out.
 
 struct Params {
     // Clusters of the round.

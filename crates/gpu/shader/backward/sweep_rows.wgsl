@@ -1,18 +1,21 @@
 // Parts: types.
 //
-// Sweeps over the contact rows of some buckets, which share no vertex that moves (bricks.rs). A workgroup takes a bucket at
-// a time, goes over it as often as it is told, and waits between its colors: rows of one color share no vertex that moves.
-// Vertices that do not move are read by many and written by none.
+// Sweeps over the contact rows of some buckets, which share no vertex that moves (bricks.rs). A workgroup
+// takes a bucket at a time, goes over it as often as it is told, and waits between its colors: rows of one
+// color share no vertex that moves. Vertices that do not move are read by many and written by none.
 //
-// The rows without a color come last, all at once, with masses that are split (color_rows.wgsl). What they move a vertex by is added as
-// integers, in a unit that has room for all of them, so that the sums do not depend on their order.
+// The rows without a color come last, all at once, with masses that are split (color_rows.wgsl). What they
+// move a vertex by is added as integers, in a unit that has room for all of them, so that the sums do not
+// depend on their order.
 //
-// Most buckets have no more rows than a workgroup has threads. Each thread then keeps a row, and the workgroup the
-// displacements of all vertices in its own memory, in the slots of a hash table: between colors nothing is read from the
-// memory of the device, which takes ten times as long as waiting. Other buckets are swept there. The arithmetic is the same.
+// Most buckets have no more rows than a workgroup has threads. Each thread then keeps a row, and the
+// workgroup the displacements of all vertices in its own memory, in the slots of a hash table: between colors
+// nothing is read from the memory of the device, which takes ten times as long as waiting. Other buckets are
+// swept there. The arithmetic is the same.
 //
-// First all threads look whether any row would change. Where none would, because nothing presses or because sweeps have come
-// to their end in single precision, as in most buckets, a sweep changes nothing and is left out.
+// First all threads look whether any row would change. Where none would, because nothing presses or because
+// sweeps have come to their end in single precision, as in most buckets, a sweep changes nothing and is left
+// out.
 
 struct Params {
     // Buckets of the dispatch.

@@ -1,9 +1,10 @@
 // Parts: types, fixed.
 //
-// The displacement of each vertex without any multiplier: the minimum of m |u - u0|^2 + mu |u|^2, with u0 the way to the
-// target and mu the proximal weight, which is reset. Prescribed vertices have no inverse weight. They go all the way, but where
-// one has got no nearer for some steps, rows and edges take it to stay where it is: something holds it back, and nothing could
-// follow it. The forward step goes on to move it toward its target.
+// The displacement of each vertex without any multiplier: the minimum of m |u - u0|^2 + mu |u|^2, with u0 the
+// way to the target and mu the proximal weight, which is reset. Prescribed vertices have no inverse weight.
+// They go all the way, but where one has got no nearer for some steps, rows and edges take it to stay where
+// it is: something holds it back, and nothing could follow it. The forward step goes on to move it toward its
+// target.
 
 struct Params {
     vertices: u32,
@@ -22,8 +23,8 @@ struct Params {
 
 // Largest proximal weight, in the mass of the vertex.
 const MOST_PROXIMAL: f32 = 100.0;
-// Steps without progress after which a prescribed vertex is taken to stay: fewer than the 24 steps of a call that another
-// Newton iteration follows.
+// Steps without progress after which a prescribed vertex is taken to stay: fewer than the 24 steps of a call
+// that another Newton iteration follows.
 const MOST_IDLE_STEPS: u32 = 6u;
 
 @compute @workgroup_size(256)

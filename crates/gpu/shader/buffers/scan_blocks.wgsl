@@ -1,7 +1,8 @@
 // Parts: types, scan, entries.
 //
-// Second part of a prefix sum: where those of each block begin, and how many there are. One workgroup: each thread has
-// blocks that follow each other, so there is one sum over the threads for any number of blocks.
+// Second part of a prefix sum: where the entries of each block begin, and how many there are. One workgroup:
+// each thread has blocks that follow each other, so there is one sum over the threads for any number of
+// blocks.
 
 struct Params {
     // Most blocks.

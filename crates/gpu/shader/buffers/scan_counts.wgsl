@@ -1,7 +1,7 @@
 // Parts: types, scan, entries.
 //
-// First part of a prefix sum, of the numbers of candidates or of contact rows: where those of each row of the search, or of each
-// candidate, begin within a block of 256. Counts become sums in place.
+// First part of a prefix sum, of the numbers of candidates or of contact rows: where those of each row of the
+// search, or of each candidate, begin within a block of 256. Counts become sums in place.
 
 struct Params {
     // Most rows.

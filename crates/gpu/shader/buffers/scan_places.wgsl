@@ -1,7 +1,7 @@
 // Parts: types, scan, entries.
 //
-// Third part of a prefix sum: where each row of the search, or each candidate, begins in the list, and where the
-// last one ends.
+// Third part of a prefix sum: where each row of the search, or each candidate, begins in the list, and where
+// the last one ends.
 
 struct Params {
     // Most rows.

@@ -1,8 +1,8 @@
 // Parts: types.
 //
-// The start of a call: aims are the targets, no edge pulls, nothing has swung back or waited. An edge that is too long already
-// may have nearly its length, and one that the target keeps within its limit may be a little longer. One thread per vertex and
-// edge.
+// The start of a call: aims are the targets, no edge pulls, nothing has swung back or waited. An edge that is
+// too long already may have nearly its length, and one that the target keeps within its limit may be a little
+// longer. One thread per vertex and edge.
 
 struct Params {
     vertices: u32,
@@ -23,7 +23,8 @@ struct Params {
 @group(0) @binding(7) var<storage, read_write> late: array<Late>;
 @group(0) @binding(8) var<storage, read> vertices: array<Vertex>;
 
-// Smallest ratio of an edge's limit to its length at the start: an edge that starts too long is shortened a little in each call.
+// Smallest ratio of an edge's limit to its length at the start: an edge that starts too long is shortened a
+// little in each call.
 const START_SHARE: f32 = 0.97;
 
 const LARGEST: f32 = 3.40282347e38;

@@ -1,8 +1,8 @@
 // Parts: types, weights, pair.
 //
-// Which candidates may be within contact range at the present positions: those whose sides no slab holds farther apart than
-// both margins. The width of a slab is certified, below the distance, whatever its direction (separate.wgsl), so every pair
-// that is within range is among them, and some that are not.
+// Which candidates may be within contact range at the present positions: those whose sides no slab holds
+// farther apart than both margins. The width of a slab is certified, below the distance, whatever its
+// direction (separate.wgsl), so every pair that is within range is among them, and some that are not.
 
 struct Params {
     capacity: u32,

@@ -4,8 +4,8 @@
 
 struct Params {
     groups: u32,
-    // 1: the step is made again, after a search that found no room. Trust regions have changed then, and there is no
-    // backward step, which alone counts the rows that press.
+    // 1: the step is made again, after a search that found no room. Trust regions have changed then, and
+    // there is no backward step, which alone counts the rows that press.
     again: u32,
     // 1: it is the first step of a submission.
     first: u32,

@@ -1,12 +1,12 @@
 // Parts: types.
 //
-// Decides after a step whether the submission goes on: not if the call has ended by its rule, if the next step makes
-// another number of sweeps, or if a buffer was too small, which is known after a search or within a step too. All
-// dispatches that follow are then left without workgroups. It keeps what the step came to.
+// Decides after a step whether the submission goes on: not if the call has ended by its rule, if the next
+// step makes another number of sweeps, or if a buffer was too small, which is known after a search or within
+// a step too. All dispatches that follow are then left without workgroups. It keeps what the step came to.
 
 struct Params {
-    // A distance below which vertices have arrived, those that no pair holds back, and the residuals below which a call
-    // ends; the largest ratio of an edge to its limit.
+    // A distance below which vertices have arrived, those that no pair holds back, and the residuals below
+    // which a call ends; the largest ratio of an edge to its limit.
     distance: f32,
     unhindered: f32,
     net_residual: f32,

@@ -1,5 +1,5 @@
-// Sums the blocks of elements to those of the matrix, each in a fixed order: see linear/matrix.rs for how the matrix
-// lies. The first block of a row is its sum, which elements do not change.
+// Sums the blocks of elements to those of the matrix, each in a fixed order: see linear/matrix.rs for how the
+// matrix lies. The first block of a row is its sum, which elements do not change.
 
 struct Entry {
     at: u32,

@@ -1,8 +1,8 @@
 // Parts: elements, parts, energies, normal.
 //
-// Energies of bending around triangles that are curved at rest: the crate bowknot-dynamics, elements/shell.rs. The energy
-// is quadratic in the residuals r_e: its change is the sum over e of the stress of the mean residual times the change of
-// r_e, which follows from that of the normal without cancellation.
+// Energies of bending around triangles that are curved at rest: the crate bowknot-dynamics,
+// elements/shell.rs. The energy is quadratic in the residuals r_e: its change is the sum over e of the stress
+// of the mean residual times the change of r_e, which follows from that of the normal without cancellation.
 
 @group(0) @binding(1) var<storage, read> bends: array<Bend>;
 

@@ -1,7 +1,8 @@
 // Parts: elements, gradients, normal.
 //
-// Gradients of bending around triangles that are curved at rest: the crate bowknot-dynamics, elements/shell.rs. With the
-// stresses t_e = sum_f g_ef r_f it is sum_e a_ep t_e - T_p^T sum_e c_e t_e, see bend_hessian.wgsl.
+// Gradients of bending around triangles that are curved at rest: the crate bowknot-dynamics,
+// elements/shell.rs. With the stresses t_e = sum_f g_ef r_f it is sum_e a_ep t_e - T_p^T sum_e c_e t_e, see
+// bend_hessian.wgsl.
 
 @group(0) @binding(1) var<storage, read> bends: array<Bend>;
 

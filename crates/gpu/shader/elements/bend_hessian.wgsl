@@ -1,8 +1,9 @@
 // Parts: elements, blocks, normal.
 //
 // Gauss-Newton Hessians of bending around triangles that are curved at rest: the crate bowknot-dynamics,
-// elements/shell.rs. The residual r_e of an edge has the derivatives a_ep I - c_e T_p, with T_p = g_p1 dn/df1 + g_p2
-// dn/df2 for the corners p and 0 for the other nodes. A block is sum_ef g_ef (a_ep I - c_e T_p)^T (a_fq I - c_f T_q).
+// elements/shell.rs. The residual r_e of an edge has the derivatives a_ep I - c_e T_p, with T_p = g_p1 dn/df1
+// + g_p2 dn/df2 for the corners p and 0 for the other nodes. A block is sum_ef g_ef (a_ep I - c_e T_p)^T
+// (a_fq I - c_f T_q).
 
 @group(0) @binding(1) var<storage, read> bends: array<Bend>;
 

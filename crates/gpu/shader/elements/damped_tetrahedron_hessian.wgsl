@@ -1,8 +1,8 @@
 // Parts: elements, blocks, strain, solid, eigen.
 //
-// Hessians of damped tetrahedra of constant strain: the crate bowknot-dynamics, elements/tetrahedron.rs. As in
-// tetrahedron_hessian.wgsl, with a potential of the increment of Green's strain since the start of the time step. It couples all
-// increments d_ij, index 3 i + j, and the sum of both is filtered.
+// Hessians of damped tetrahedra of constant strain: the crate bowknot-dynamics, elements/tetrahedron.rs. As
+// in tetrahedron_hessian.wgsl, with a potential of the increment of Green's strain since the start of the
+// time step. It couples all increments d_ij, index 3 i + j, and the sum of both is filtered.
 
 const ORDER: u32 = 9u;
 

@@ -1,7 +1,7 @@
 // Parts: terms.
 //
-// The gradient (R + K) d + c + sum of e' of the potential by each node: see potential/mod.rs. K multiplies differences of
-// d, which are formed in integers: a body that moves as a whole does not feel it.
+// The gradient (R + K) d + c + sum of e' of the potential by each node: see potential/mod.rs. K multiplies
+// differences of d, which are formed in integers: a body that moves as a whole does not feel it.
 
 @group(0) @binding(0) var<uniform> params: NodeParams;
 // Of each node: its first entry in `sources` and their end, its first entry in `pairs` and their end.

@@ -1,8 +1,9 @@
 // Parts: elements, parts, energies, triangle.
 //
-// Energies of triangles of constant strain: the crate bowknot-dynamics, elements/woven.rs, where U - I = (C + J I)/r - I
-// with C = F^T F, J = |f0 x f1|, r^2 = tr C + 2 J. From the change (d0, d1) of F follow those of C, J and r, and from them
-// that of U, without cancellation. The energy is quadratic: its change is the stress of the mean strain times that of U.
+// Energies of triangles of constant strain: the crate bowknot-dynamics, elements/woven.rs, where U - I = (C +
+// J I)/r - I with C = F^T F, J = |f0 x f1|, r^2 = tr C + 2 J. From the change (d0, d1) of F follow those of
+// C, J and r, and from them that of U, without cancellation. The energy is quadratic: its change is the
+// stress of the mean strain times that of U.
 
 @group(0) @binding(1) var<storage, read> membranes: array<Membrane>;
 

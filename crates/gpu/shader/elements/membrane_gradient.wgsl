@@ -1,8 +1,8 @@
 // Parts: elements, gradients, triangle.
 //
-// Gradients of triangles of constant strain: the crate bowknot-dynamics, elements/woven.rs. With the stress T of the
-// strain U - I in the frame v, the stress along u_i v_j^T is T_11, 2 T_12 s1 / (s1 + s2), 2 T_12 s2 / (s1 + s2), T_22, and
-// that of damping F S = u diag(s) S.
+// Gradients of triangles of constant strain: the crate bowknot-dynamics, elements/woven.rs. With the stress T
+// of the strain U - I in the frame v, the stress along u_i v_j^T is T_11, 2 T_12 s1 / (s1 + s2), 2 T_12 s2 /
+// (s1 + s2), T_22, and that of damping F S = u diag(s) S.
 
 @group(0) @binding(1) var<storage, read> membranes: array<Membrane>;
 

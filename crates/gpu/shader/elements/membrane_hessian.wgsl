@@ -1,7 +1,8 @@
 // Parts: elements, blocks, triangle, eigen.
 //
-// Hessians of triangles of constant strain: the formulas of the crate bowknot-dynamics, elements/woven.rs, with F =
-// s1 u1 v1^T + s2 u2 v2^T; increments of F are d_ij along u_i v_j^T and n v_j^T. Negative curvatures are filtered.
+// Hessians of triangles of constant strain: the formulas of the crate bowknot-dynamics, elements/woven.rs,
+// with F = s1 u1 v1^T + s2 u2 v2^T; increments of F are d_ij along u_i v_j^T and n v_j^T. Negative curvatures
+// are filtered.
 
 const ORDER: u32 = 4u;
 

@@ -1,8 +1,8 @@
 // Parts: parts, terms.
 //
-// The quadratic terms of the potential: see potential/mod.rs. With d from the start to the reference and u from there to
-// the trial, the energy of a node is d.((R + K) d / 2 + c) and its change u.((R + K)(d + u/2) + c). K multiplies differences
-// of d and u, which are formed in integers.
+// The quadratic terms of the potential: see potential/mod.rs. With d from the start to the reference and u
+// from there to the trial, the energy of a node is d.((R + K) d / 2 + c) and its change u.((R + K)(d + u/2) +
+// c). K multiplies differences of d and u, which are formed in integers.
 
 @group(0) @binding(1) var<storage, read> ranges: array<vec4<u32>>;
 @group(0) @binding(2) var<storage, read> pairs: array<Pair>;

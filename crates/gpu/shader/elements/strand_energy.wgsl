@@ -1,7 +1,7 @@
 // Parts: elements, parts, energies, strand.
 //
-// Energies of strands: the crate bowknot-dynamics, elements/strand.rs. From the change of w follows that of its length,
-// without cancellation.
+// Energies of strands: the crate bowknot-dynamics, elements/strand.rs. From the change of w follows that of
+// its length, without cancellation.
 
 @group(0) @binding(1) var<storage, read> strands: array<Strand>;
 
@@ -26,7 +26,8 @@ fn energy(strand: Strand) -> vec4<f32> {
     let moves = c * length(second_change) + a * length(first_change);
     let reach = c * length(second) + a * length(first) + moves;
     let strain = size - strand.rest;
-    // An edge that turns hardly changes its length: its rounding is that of the change, and of the strain where it changes.
+    // An edge that turns hardly changes its length: its rounding is that of the change, and of the strain
+    // where it changes.
     var changed = moves;
     if is_edge(strand) {
         changed = abs(dq);

@@ -1,7 +1,7 @@
 // Parts: elements, blocks, strand.
 //
-// Hessians of strands: the crate bowknot-dynamics, elements/strand.rs. What multiplies search directions is the second
-// derivative by w (strand_product.wgsl); blocks are for the preconditioner.
+// Hessians of strands: the crate bowknot-dynamics, elements/strand.rs. What multiplies search directions is
+// the second derivative by w (strand_product.wgsl); blocks are for the preconditioner.
 
 @group(0) @binding(1) var<storage, read> strands: array<Strand>;
 @group(0) @binding(5) var<storage, read_write> curvatures: array<Curvature>;

@@ -1,9 +1,10 @@
 // Parts: elements, parts, energies, strain, logarithm.
 //
 // Energies of tetrahedra of constant strain: the crate bowknot-dynamics, elements/solid_law.rs and
-// elements/tetrahedron.rs. The change of St. Venant-Kirchhoff's energy and of the potential of damping, which are quadratic
-// in Green's strain, is the stress of the mean strain times the change of the strain. Stable neo-Hookean: with the changes
-// dI of |F|^2 and dJ of det F it is mu/2 (dI - log(1 + dI/(I + 1))) + (lambda (J + dJ/2 - 1) - 3/4 mu) dJ.
+// elements/tetrahedron.rs. The change of St. Venant-Kirchhoff's energy and of the potential of damping, which
+// are quadratic in Green's strain, is the stress of the mean strain times the change of the strain. Stable
+// neo-Hookean: with the changes dI of |F|^2 and dJ of det F it is mu/2 (dI - log(1 + dI/(I + 1))) + (lambda
+// (J + dJ/2 - 1) - 3/4 mu) dJ.
 
 @group(0) @binding(1) var<storage, read> tetrahedra: array<Tetrahedron>;
 

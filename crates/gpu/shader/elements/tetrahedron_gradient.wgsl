@@ -1,8 +1,8 @@
 // Parts: elements, gradients, strain.
 //
 // Gradients of tetrahedra of constant strain: the crate bowknot-dynamics, elements/tetrahedron.rs and
-// elements/solid_law.rs. The stress is F (2 mu E + lambda tr(E) I) or mu (1 - 1/(I + 1)) F + (lambda (J - 1) - 3/4 mu)
-// dJ/dF, and that of damping F S of the increment of Green's strain.
+// elements/solid_law.rs. The stress is F (2 mu E + lambda tr(E) I) or mu (1 - 1/(I + 1)) F + (lambda (J - 1)
+// - 3/4 mu) dJ/dF, and that of damping F S of the increment of Green's strain.
 
 @group(0) @binding(1) var<storage, read> tetrahedra: array<Tetrahedron>;
 

@@ -1,8 +1,8 @@
 // Parts: elements, blocks, strain, solid, eigen.
 //
-// Hessians of tetrahedra of constant strain without damping: the crate bowknot-dynamics, elements/tetrahedron.rs and
-// elements/solid_law.rs. F = u diag(s) v^T with rotations u and v; increments of F are d_ij along u_i v_j^T.
-// damped_tetrahedron_hessian.wgsl has those with damping.
+// Hessians of tetrahedra of constant strain without damping: the crate bowknot-dynamics,
+// elements/tetrahedron.rs and elements/solid_law.rs. F = u diag(s) v^T with rotations u and v; increments of
+// F are d_ij along u_i v_j^T. damped_tetrahedron_hessian.wgsl has those with damping.
 
 const ORDER: u32 = 3u;
 
@@ -34,7 +34,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             for (var b = a + 1u; b < 4u; b += 1u) {
                 let g = shape[a];
                 let h = shape[b];
-                // d_ij d_kl has a curvature where i = k, j = l (even), i = l, j = k (odd), i = j, k = l (scaling).
+                // d_ij d_kl has a curvature where i = k, j = l (even), i = l, j = k (odd), i = j, k = l
+                // (scaling).
                 var columns: array<vec3<f32>, 3>;
                 for (var i = 0u; i < 3u; i += 1u) {
                     var row = vec3<f32>(0.0);

@@ -1,7 +1,7 @@
 // Parts: types, most.
 //
-// Moves the vertices, and reports what is left of their ways and which prescribed vertices make progress. Nothing moves
-// if a buffer was too small for all pairs.
+// Moves the vertices, and reports what is left of their ways and which prescribed vertices make progress.
+// Nothing moves if a buffer was too small for all pairs.
 
 struct Params {
     vertices: u32,

@@ -1,8 +1,9 @@
 // Parts: types.
 //
-// How far the vertices of each block are from where the forces on them balance: sums over the block, in a fixed order. The
-// residual of a vertex is y0 + m^-1 J^T lambda - x = u mu / m + (aim - x), with the displacement u of the backward step, its
-// proximal weight mu, and x after the step. A block holds vertices of one body. One workgroup per block.
+// How far the vertices of each block are from where the forces on them balance: sums over the block, in a
+// fixed order. The residual of a vertex is y0 + m^-1 J^T lambda - x = u mu / m + (aim - x), with the
+// displacement u of the backward step, its proximal weight mu, and x after the step. A block holds vertices
+// of one body. One workgroup per block.
 
 struct Params {
     blocks: u32,

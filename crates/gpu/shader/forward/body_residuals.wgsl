@@ -1,7 +1,7 @@
 // Parts: types.
 //
-// The residuals of each body from those of its blocks, which follow each other: the length of the mean residual, and the
-// mean length.
+// The residuals of each body from those of its blocks, which follow each other: the length of the mean
+// residual, and the mean length.
 
 struct Params {
     blocks: u32,
@@ -22,7 +22,8 @@ fn joined(a: BlockSum, b: BlockSum) -> BlockSum {
     return sum;
 }
 
-// A workgroup per body, that of its first block: its threads take every 64th block, then add what they have by halves.
+// A workgroup per body, that of its first block: its threads take every 64th block, then add what they have
+// by halves.
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     for (var b = group.x; b < params.blocks; b += MOST_WORKGROUPS) {

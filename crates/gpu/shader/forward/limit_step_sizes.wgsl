@@ -1,12 +1,12 @@
 // Parts: types, weights, pair.
 //
-// Limits the step sizes of the vertices of each candidate: each side may close a share of the gap, so that each stays in
-// its own half-space.
+// Limits the step sizes of the vertices of each candidate: each side may close a share of the gap, so that
+// each stays in its own half-space.
 //
-// Rounding. Let u = 2^-24 and P the sum of the coordinates of the longest path of the pair. A path is off by 3 u P, the
-// closing speed along n by 4 u P more, shares and step sizes round another four times: less than 16 u P for a side, and a
-// position is rounded to the grid, by less than 1 in each coordinate, sqrt(3) along n. Both sides together: less than
-// 4 + 32 u P; STEP and PATH_ROUNDING are larger.
+// Rounding. Let u = 2^-24 and P the sum of the coordinates of the longest path of the pair. A path is off by
+// 3 u P, the closing speed along n by 4 u P more, shares and step sizes round another four times: less than
+// 16 u P for a side, and a position is rounded to the grid, by less than 1 in each coordinate, sqrt(3) along
+// n. Both sides together: less than 4 + 32 u P; STEP and PATH_ROUNDING are larger.
 
 struct Params {
     capacity: u32,
@@ -72,7 +72,8 @@ fn limit_pair(candidate: Candidate, separation: Separation) {
         one_group = one_group && vertices[pair.vertices[k]].group == group;
     }
     if one_group {
-        // All move by one fraction: only the difference of both sides closes the gap. A half-space does not move.
+        // All move by one fraction: only the difference of both sides closes the gap. A half-space does not
+        // move.
         let total = extremes.x + select(extremes.y, 0.0, pair.side_a == pair.count);
         if total > allowed {
             for (var k = 0u; k < pair.count; k += 1u) {

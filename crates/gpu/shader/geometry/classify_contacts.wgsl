@@ -1,10 +1,10 @@
 // Parts: types, weights, pair.
 //
-// Tells contacts from pairs that are only close, and sets the distance that the row of each pair asks for. Where two
-// surfaces touch, many pairs are close, but the distance has a minimum at few of them; a row along the normal of another
-// would block what slides past. A pair is a contact if its normal lies in the normal cones of the features that its closest
-// points are on: no neighbor of a feature is nearer to the other side. A pair that is close but no contact guards only a
-// part of its gap.
+// Tells contacts from pairs that are only close, and sets the distance that the row of each pair asks for.
+// Where two surfaces touch, many pairs are close, but the distance has a minimum at few of them; a row along
+// the normal of another would block what slides past. A pair is a contact if its normal lies in the normal
+// cones of the features that its closest points are on: no neighbor of a feature is nearer to the other side.
+// A pair that is close but no contact guards only a part of its gap.
 
 struct Params {
     capacity: u32,
@@ -17,7 +17,8 @@ struct Params {
 @group(0) @binding(1) var<storage, read> positions: array<vec4<i32>>;
 @group(0) @binding(2) var<storage, read> edges: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read> triangles: array<vec4<u32>>;
-// For each vertex, then for each edge, where its list of vertices begins; these lists; three edges of each triangle.
+// For each vertex, then for each edge, where its list of vertices begins; these lists; three edges of each
+// triangle.
 @group(0) @binding(4) var<storage, read> adjacency: array<u32>;
 @group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
 @group(0) @binding(6) var<storage, read> states: array<PairState>;
@@ -38,8 +39,8 @@ const ON_BORDER: f32 = 1e-6;
 // Sines: by how much a normal may leave its cone, and up to where two faces are one flat surface.
 const CONE_TOLERANCE: f32 = 0.02;
 const FLAT_TOLERANCE: f32 = 2e-3;
-// A pair that is closer than this share of its desired distance has a row whatever its normal, for this share of its gap
-// and at least this share of the desired distance.
+// A pair that is closer than this share of its desired distance has a row whatever its normal, for this share
+// of its gap and at least this share of the desired distance.
 const CLOSE: f32 = 1.001;
 const SHARE: f32 = 0.9;
 const LEAST_SHARE: f32 = 0.5;

@@ -1,11 +1,12 @@
 // Parts: types, closest, weights, pair.
 //
-// Desired distance and minimum separation of candidates that are new or come into range, and the minimum separation of all
-// for the forward step.
+// Desired distance and minimum separation of candidates that are new or come into range, and the minimum
+// separation of all for the forward step.
 //
-// The desired distance of two elements of one connected component is at most half of their rest distance: otherwise it
-// would tear a fine mesh apart. A pair that starts closer opens by at most `growth` in a call. Where the target knows the
-// contacts of a vertex, pairs that are near guard only a part of their gap: the target decides about the rest.
+// The desired distance of two elements of one connected component is at most half of their rest distance:
+// otherwise it would tear a fine mesh apart. A pair that starts closer opens by at most `growth` in a call.
+// Where the target knows the contacts of a vertex, pairs that are near guard only a part of their gap: the
+// target decides about the rest.
 
 struct Params {
     capacity: u32,
@@ -18,8 +19,9 @@ struct Params {
     range: f32,
     // The half-spaces lie behind the vertices.
     first_half_space: u32,
-    // Distance in the desired one below which the target knows a contact, share of its gap that is then guarded, and
-    // the smallest distance asked for, in the way from the minimum separation to the desired distance.
+    // Distance in the desired one below which the target knows a contact, share of its gap that is then
+    // guarded, and the smallest distance asked for, in the way from the minimum separation to the desired
+    // distance.
     known: f32,
     guarded: f32,
     guarded_floor: f32,

@@ -2,11 +2,12 @@
 //
 // Contact geometry of the candidates: a direction and a slab that certainly lies between both sides.
 //
-// For a unit vector n, min over side a of n.x - max over side b of n.x is at most the distance of the sides. Let
-// u = 2^-24 and m the largest coordinate of the differences x_a - x_b. Differences of grid points are exact as integers
-// and rounded once as f32; a dot product of three terms adds 3 u: an error of 4.01 u sqrt(3) m. WGSL allows sqrt 5 ulp
-// and a quotient 2.5 ulp, so | |n| - 1 | <= 18 u, which moves the width by 18 u sqrt(3) m. Together that is less than
-// 41 u m; 64 u m are subtracted. Additions in another order, or fused, have smaller or equal bounds.
+// For a unit vector n, min over side a of n.x - max over side b of n.x is at most the distance of the sides.
+// Let u = 2^-24 and m the largest coordinate of the differences x_a - x_b. Differences of grid points are
+// exact as integers and rounded once as f32; a dot product of three terms adds 3 u: an error of 4.01 u
+// sqrt(3) m. WGSL allows sqrt 5 ulp and a quotient 2.5 ulp, so | |n| - 1 | <= 18 u, which moves the width by
+// 18 u sqrt(3) m. Together that is less than 41 u m; 64 u m are subtracted. Additions in another order, or
+// fused, have smaller or equal bounds.
 
 struct Params {
     // Candidates that the list holds.

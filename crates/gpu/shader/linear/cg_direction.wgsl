@@ -1,7 +1,7 @@
 // Parts: linear, sum, two_sums.
 //
-// The next search direction p = z + (rz' / rz) p. The motions of the coarse levels are added to z here: each group of a
-// patch moves with all groups above it. One workgroup per four patches, which go on with strides.
+// The next search direction p = z + (rz' / rz) p. The motions of the coarse levels are added to z here: each
+// group of a patch moves with all groups above it. One workgroup per four patches, which go on with strides.
 
 struct Params {
     patches: u32,

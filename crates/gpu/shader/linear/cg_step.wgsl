@@ -1,11 +1,11 @@
 // Parts: linear, sum, two_sums, rigid.
 //
-// A step of conjugate gradients along the direction p with the image q, and the fine part of the preconditioner:
-// block-Jacobi, and rigid motions of the groups of each patch. See linear/patches.rs. One workgroup per four patches, which
-// go on with strides.
+// A step of conjugate gradients along the direction p with the image q, and the fine part of the
+// preconditioner: block-Jacobi, and rigid motions of the groups of each patch. See linear/patches.rs. One
+// workgroup per four patches, which go on with strides.
 //
-// z overwrites q. The squared norm r . M r is summed level by level: r . D^-1 r + sum f . A^-1 f, with the forces f on the
-// rigid motions of a level and the matrix A of a domain.
+// z overwrites q. The squared norm r . M r is summed level by level: r . D^-1 r + sum f . A^-1 f, with the
+// forces f on the rigid motions of a level and the matrix A of a domain.
 
 struct Params {
     nodes: u32,

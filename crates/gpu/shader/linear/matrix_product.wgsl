@@ -1,8 +1,8 @@
 // Parts: linear, sum.
 //
-// The image q = H p of the search direction, and p . q by workgroup: see linear/matrix.rs for how H lies. Rows multiply
-// differences p_j - p_i, so that rounding of H acts on deformations alone. Rows of strands start from the image, which holds the
-// product of strand_product.wgsl, and add the sum of the row.
+// The image q = H p of the search direction, and p . q by workgroup: see linear/matrix.rs for how H lies.
+// Rows multiply differences p_j - p_i, so that rounding of H acts on deformations alone. Rows of strands
+// start from the image, which holds the product of strand_product.wgsl, and add the sum of the row.
 
 struct Params {
     nodes: u32,
@@ -34,8 +34,8 @@ fn column_of_block(at: u32) -> vec3<f32> {
     return vec3<f32>(number(at), number(at + SLICE), number(at + 2u * SLICE));
 }
 
-// The reaction of a spring: its Hessian times the weighted sum of p over its nodes. Each of them computes it, which saves a
-// dispatch.
+// The reaction of a spring: its Hessian times the weighted sum of p over its nodes. Each of them computes it,
+// which saves a dispatch.
 fn reaction(spring: Spring) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
     for (var k = 0u; k < 4u; k += 1u) {

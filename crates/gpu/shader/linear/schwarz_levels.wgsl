@@ -1,13 +1,15 @@
 // Parts: linear, sum, rigid.
 //
-// Up to four coarse levels of the preconditioner at once: the motions of the eight groups of each domain under the forces on
-// them, and the force on the group that they form. The force on a group is the sum of those on its parts of the first of these
-// levels, 32 threads per group, so no level waits for the one below. One workgroup per domain, which go on with strides.
+// Up to four coarse levels of the preconditioner at once: the motions of the eight groups of each domain
+// under the forces on them, and the force on the group that they form. The force on a group is the sum of
+// those on its parts of the first of these levels, 32 threads per group, so no level waits for the one below.
+// One workgroup per domain, which go on with strides.
 
 struct Params {
     // Groups of each of these levels; 0 beyond the last one.
     groups: vec4<u32>,
-    // Places of the first groups of these levels; that of the first parent of the last one is the next, or `parents`.
+    // Places of the first groups of these levels; that of the first parent of the last one is the next, or
+    // `parents`.
     firsts: vec4<u32>,
     // The first domains of these levels among those of all coarse levels; beyond the last one all bits.
     first_domains: vec4<u32>,
@@ -49,7 +51,8 @@ fn first_parent(rise: u32) -> u32 {
     return select(params.firsts[(rise + 1u) % 4u], params.parents, rise == 3u);
 }
 
-// Threads that have parts of a group: one part each up to the second level, beyond it eight that follow each other.
+// Threads that have parts of a group: one part each up to the second level, beyond it eight that follow each
+// other.
 fn lanes_of(rise: u32) -> u32 {
     return select(min(1u << (3u * rise), 8u), LANES, rise == 3u);
 }

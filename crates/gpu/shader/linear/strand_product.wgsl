@@ -1,8 +1,9 @@
 // Parts: linear, strand.
 //
-// The product of the Hessians of strands with the search direction p, row by row. Edges are up to 10^7 times as stiff as
-// their inertia: the second derivative by w acts on differences of p along one direction, so that what rounding leaves is
-// along that direction too, where stiffness takes it up. Blocks of the matrix would leave it in all directions.
+// The product of the Hessians of strands with the search direction p, row by row. Edges are up to 10^7 times
+// as stiff as their inertia: the second derivative by w acts on differences of p along one direction, so that
+// what rounding leaves is along that direction too, where stiffness takes it up. Blocks of the matrix would
+// leave it in all directions.
 
 struct Params {
     rows: u32,
@@ -11,7 +12,8 @@ struct Params {
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> strands: array<Strand>;
 @group(0) @binding(2) var<storage, read> curvatures: array<Curvature>;
-// Of each row its node, its first entry and their end; then the entries, three times the element plus the place in it.
+// Of each row its node, its first entry and their end; then the entries, three times the element plus the
+// place in it.
 @group(0) @binding(3) var<storage, read> rows: array<u32>;
 @group(0) @binding(4) var<storage, read> direction: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> image: array<vec4<f32>>;

@@ -1,7 +1,7 @@
 // Parts: segments.
 //
-// R (d + p) by block: the forces of inertia and drag after the step p, with the displacement d since the start of the
-// time step. A window of nodes per workgroup.
+// R (d + p) by block: the forces of inertia and drag after the step p, with the displacement d since the
+// start of the time step. A window of nodes per workgroup.
 
 struct Params {
     nodes: u32,

@@ -1,7 +1,7 @@
 // Parts: newton.
 //
-// What conjugate gradients start from: the residual b - H p times the factor, or b times the factor. Nothing is done
-// between the iterations of a round.
+// What conjugate gradients start from: the residual b - H p times the factor, or b times the factor. Nothing
+// is done between the iterations of a round.
 
 struct Params {
     nodes: u32,

@@ -20,7 +20,8 @@ const SCALE: u32 = 1u;
 const START: u32 = 2u;
 const ROUND: u32 = 3u;
 
-// Share of the goal at which iterations end, squared: the residual that is computed afterwards shall be below it as well.
+// Share of the goal at which iterations end, squared: the residual that is computed afterwards shall be below
+// it as well.
 const MARGIN: f32 = 0.9025;
 
 // Largest reduction of a squared norm by a round: rounding comes near then.
@@ -39,7 +40,8 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         let largest = largest_of_parts(t, params.first, params.count, 1u);
         if t == 0u {
             let bits = bitcast<u32>(largest) & 0x7f800000u;
-            // Of exponents that are neither the smallest nor the two largest ones the inverse is a number, too.
+            // Of exponents that are neither the smallest nor the two largest ones the inverse is a number,
+            // too.
             let is_usual = bits > 0u && bits < 0x7f000000u;
             solve.factor = bitcast<f32>(select(0x3f800000u, 0x7f000000u - bits, is_usual));
             solve.inverse = bitcast<f32>(select(0x3f800000u, bits, is_usual));

@@ -1,7 +1,8 @@
 // Parts: sum, newton.
 //
-// The combination of guesses with the least energy is where a linear solve starts: the minimum along the first one, then
-// along the part of the second one that is conjugate to the first. Its residual takes the place of the first guess.
+// The combination of guesses with the least energy is where a linear solve starts: the minimum along the
+// first one, then along the part of the second one that is conjugate to the first. Its residual takes the
+// place of the first guess.
 
 struct Params {
     nodes: u32,
@@ -11,8 +12,8 @@ struct Params {
     first: u32,
 }
 
-// A second guess whose conjugate part has less than this share of its curvature counts as parallel to the first: what is
-// left is rounding.
+// A second guess whose conjugate part has less than this share of its curvature counts as parallel to the
+// first: what is left is rounding.
 const MIN_CONJUGATE: f32 = 1e-5;
 
 @group(0) @binding(0) var<uniform> params: Params;

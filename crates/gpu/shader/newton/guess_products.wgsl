@@ -1,7 +1,7 @@
 // Parts: sum.
 //
-// Products of guesses g with their images q = H g and with the right-hand side b, by workgroup: g1 . q1, g1 . b, g2 . q1,
-// g2 . q2, g2 . b.
+// Products of guesses g with their images q = H g and with the right-hand side b, by workgroup: g1 . q1, g1 .
+// b, g2 . q1, g2 . q2, g2 . b.
 
 struct Params {
     nodes: u32,

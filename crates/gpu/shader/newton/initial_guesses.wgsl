@@ -1,6 +1,7 @@
 // Parts: free.
 //
-// Guesses of a Newton step: the ways of free nodes from the iterate to the last target and to where inertia leads.
+// Guesses of a Newton step: the ways of free nodes from the iterate to the last target and to where inertia
+// leads.
 
 struct Params {
     nodes: u32,

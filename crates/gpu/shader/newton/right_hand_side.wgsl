@@ -1,7 +1,7 @@
 // Parts: linear, sum, largest, newton, free.
 //
-// The right-hand side of a Newton system, b = -(g + H q) at free nodes and 0 at others, with the forces of springs; and
-// the largest of its numbers by workgroup.
+// The right-hand side of a Newton system, b = -(g + H q) at free nodes and 0 at others, with the forces of
+// springs; and the largest of its numbers by workgroup.
 
 struct Params {
     nodes: u32,

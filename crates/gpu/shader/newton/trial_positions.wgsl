@@ -1,9 +1,9 @@
 // Parts: sum, largest, newton, free.
 //
-// A trial of the line search: the iterate plus a multiple of the step p, rounded to the grid; nodes that are not free
-// are at their ends. By workgroup: p . b, the largest component of p [m], the largest squared distances of free nodes
-// from the iterate and from the iterate at the start of the target, and the largest coordinate before it is clamped
-// [quanta].
+// A trial of the line search: the iterate plus a multiple of the step p, rounded to the grid; nodes that are
+// not free are at their ends. By workgroup: p . b, the largest component of p [m], the largest squared
+// distances of free nodes from the iterate and from the iterate at the start of the target, and the largest
+// coordinate before it is clamped [quanta].
 
 struct Params {
     nodes: u32,

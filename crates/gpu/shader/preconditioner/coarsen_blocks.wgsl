@@ -1,7 +1,7 @@
 // Parts: groups.
 //
-// Galerkin blocks of pairs of groups of groups: sums of those of their parts, with the motions of a part by that of
-// its group.
+// Galerkin blocks of pairs of groups of groups: sums of those of their parts, with the motions of a part by
+// that of its group.
 
 struct Params {
     pairs: u32,
@@ -19,7 +19,8 @@ struct Part {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-// Of each pair of this and the coarser levels: its first part, the number of parts, the frames of both groups.
+// Of each pair of this and the coarser levels: its first part, the number of parts, the frames of both
+// groups.
 @group(0) @binding(1) var<storage, read> sums: array<vec4<u32>>;
 @group(0) @binding(2) var<storage, read> parts: array<Part>;
 @group(0) @binding(3) var<storage, read> frames: array<Frame>;
@@ -32,7 +33,8 @@ fn link(group: u32, part: u32) -> vec4<f32> {
     return vec4<f32>(between(parent.center, child.center, params.quantum), child.size) / parent.size;
 }
 
-// Parts that the threads look up at once: the place of their block, whether its transpose counts, and both links.
+// Parts that the threads look up at once: the place of their block, whether its transpose counts, and both
+// links.
 const BATCH: u32 = 64u;
 
 var<workgroup> blocks: array<vec2<u32>, 64>;

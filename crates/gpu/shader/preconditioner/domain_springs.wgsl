@@ -1,7 +1,7 @@
 // Parts: linear, groups.
 //
-// What springs add to the matrices of domains, on and above the diagonal: sums over chunks of the springs that touch a
-// domain, one workgroup per chunk.
+// What springs add to the matrices of domains, on and above the diagonal: sums over chunks of the springs
+// that touch a domain, one workgroup per chunk.
 
 struct Params {
     chunks: u32,
@@ -10,7 +10,8 @@ struct Params {
     quantum: f32,
 }
 
-// Springs of a domain: their places in the list, the slots of a group of its level, its first group and the frame of that.
+// Springs of a domain: their places in the list, the slots of a group of its level, its first group and the
+// frame of that.
 struct Chunk {
     begin: u32,
     end: u32,
@@ -31,7 +32,8 @@ struct Chunk {
 // Springs that the threads look up at once.
 const BATCH: u32 = 32u;
 
-// Of each spring its Hessian, and of each of its nodes the group in the domain, 8 without one, the weight and the arm.
+// Of each spring its Hessian, and of each of its nodes the group in the domain, 8 without one, the weight and
+// the arm.
 var<workgroup> hessians: array<mat3x3<f32>, 32>;
 var<workgroup> groups: array<u32, 128>;
 var<workgroup> arms: array<vec4<f32>, 128>;

@@ -1,7 +1,8 @@
 // Parts: linear.
 //
-// Block-Jacobi: the diagonal blocks, springs included, as products L D L^T. The rounding of an inverse is relative to its
-// largest entry, that of the softest direction; in stiff directions it would be larger than the entry itself.
+// Block-Jacobi: the diagonal blocks, springs included, as products L D L^T. The rounding of an inverse is
+// relative to its largest entry, that of the softest direction; in stiff directions it would be larger than
+// the entry itself.
 
 struct Params {
     slots: u32,
@@ -14,7 +15,8 @@ struct Params {
 @group(0) @binding(3) var<storage, read> spring_words: array<u32>;
 @group(0) @binding(4) var<storage, read_write> slots: array<PatchSlot>;
 
-// Smallest pivot as a share of the trace. Smaller ones are mostly rounding; a larger one keeps the block positive.
+// Smallest pivot as a share of the trace. Smaller ones are mostly rounding; a larger one keeps the block
+// positive.
 const MIN_PIVOT: f32 = 2e-7;
 
 @compute @workgroup_size(64)

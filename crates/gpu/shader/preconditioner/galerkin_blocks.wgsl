@@ -1,7 +1,8 @@
 // Parts: linear, groups.
 //
 // Galerkin blocks P^T H P of pairs of groups, six rigid motions each, without springs. Rows of H multiply
-// differences, as in matrix_product.wgsl, so that motions of a group as a whole do not feel the stiffness within it.
+// differences, as in matrix_product.wgsl, so that motions of a group as a whole do not feel the stiffness
+// within it.
 
 struct Params {
     pairs: u32,
@@ -90,7 +91,8 @@ fn row_of(i: u32, pair: vec2<u32>, arm: vec3<f32>, frame: Frame) -> Row {
     return row;
 }
 
-// A thread per slot of the first group, and pairs side by side if groups have fewer slots than there are threads.
+// A thread per slot of the first group, and pairs side by side if groups have fewer slots than there are
+// threads.
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     let t = local.x;

@@ -1,7 +1,7 @@
 // Parts: linear, groups, eigen.
 //
-// Centers and sizes of groups of nodes, or of groups of eight groups; arms of nodes from the center of their group, and
-// links from a group to the one that it is part of.
+// Centers and sizes of groups of nodes, or of groups of eight groups; arms of nodes from the center of their
+// group, and links from a group to the one that it is part of.
 
 const ORDER: u32 = 3u;
 

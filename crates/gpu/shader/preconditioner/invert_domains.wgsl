@@ -1,12 +1,12 @@
 // Parts: linear, groups.
 //
-// Inverses of the matrices of domains, eight groups of six rigid motions each, springs included; one workgroup per
-// domain.
+// Inverses of the matrices of domains, eight groups of six rigid motions each, springs included; one
+// workgroup per domain.
 
 struct Params {
     domains: u32,
-    // The first domain of this level, and where its inverse goes, in domains; the frame of its first group; the number of
-    // groups of this level.
+    // The first domain of this level, and where its inverse goes, in domains; the frame of its first group;
+    // the number of groups of this level.
     first: u32,
     first_inverse: u32,
     first_part: u32,
@@ -25,13 +25,16 @@ struct Params {
 @group(0) @binding(5) var<storage, read> frames: array<Frame>;
 @group(0) @binding(6) var<storage, read_write> inverses: array<f32>;
 
-// Added to the diagonal, relative to it: larger than the rounding of the entries, so that the inverse is positive.
+// Added to the diagonal, relative to it: larger than the rounding of the entries, so that the inverse is
+// positive.
 const SHIFT: f32 = 4e-6;
 
-// A pivot of at most this share of its diagonal entry counts as zero: the motion moves nothing that others do not.
+// A pivot of at most this share of its diagonal entry counts as zero: the motion moves nothing that others do
+// not.
 const ZERO_PIVOT: f32 = 1e-6;
 
-// Threads, and words of a row in the memory of the workgroup: threads of neighboring rows then use different banks.
+// Threads, and words of a row in the memory of the workgroup: threads of neighboring rows then use different
+// banks.
 const WIDE: u32 = 192u;
 const ROW: u32 = 49u;
 

@@ -1,7 +1,7 @@
 // Parts: types, weights, pair.
 //
-// The candidates of the rows and their vertices, in the order of the candidates. A search renumbers the candidates, so rows
-// keep their pairs as well.
+// The candidates of the rows and their vertices, in the order of the candidates. A search renumbers the
+// candidates, so rows keep their pairs as well.
 
 struct Params {
     capacity: u32,

@@ -1,9 +1,9 @@
 // Parts: types.
 //
-// Friction of the contact rows: how far each contact has slipped since the start of the time step, and the multipliers that
-// its pair keeps, both across the normal. Coulomb's law at the level of positions: over a time step the slip is the
-// relative velocity at its end times the time step (implicit Euler), and the multiplier along it is at most the
-// coefficient times that of the normal.
+// Friction of the contact rows: how far each contact has slipped since the start of the time step, and the
+// multipliers that its pair keeps, both across the normal. Coulomb's law at the level of positions: over a
+// time step the slip is the relative velocity at its end times the time step (implicit Euler), and the
+// multiplier along it is at most the coefficient times that of the normal.
 
 struct Params {
     capacity: u32,
@@ -26,7 +26,8 @@ fn across(normal: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
     return v - normal * dot(normal, v);
 }
 
-// The coefficient of the two sides if they have one (the list is sorted), else the geometric mean of both sides'.
+// The coefficient of the two sides if they have one (the list is sorted), else the geometric mean of both
+// sides'.
 fn friction_of(one: u32, other: u32) -> f32 {
     let a = min(vertices[one].body, vertices[other].body);
     let b = max(vertices[one].body, vertices[other].body);

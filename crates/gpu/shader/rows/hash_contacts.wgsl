@@ -1,8 +1,9 @@
 // Parts: types, weights, pair, contact.
 //
-// Finds who has the row of a contact. Many pairs have the same closest points where these are on vertices or edges; one row
-// is enough. Each selected candidate enters its number at the place of its contact in a table, and the smallest stays there,
-// of those that press if there are any. merge_rows.wgsl takes the rows of the others away.
+// Finds who has the row of a contact. Many pairs have the same closest points where these are on vertices or
+// edges; one row is enough. Each selected candidate enters its number at the place of its contact in a table,
+// and the smallest stays there, of those that press if there are any. merge_rows.wgsl takes the rows of the
+// others away.
 
 struct Params {
     capacity: u32,

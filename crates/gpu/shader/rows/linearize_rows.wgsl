@@ -25,9 +25,9 @@ fn inside(weight: f32) -> u32 {
     return u32(abs(weight) > AT_VERTEX);
 }
 
-// Radius of curvature of a contact, for a vertex with edges of that length: how far it moves while the normal turns by
-// about one radian. A face does not turn, two edges that cross turn less the more they do, and things roll about edges
-// and points.
+// Radius of curvature of a contact, for a vertex with edges of that length: how far it moves while the normal
+// turns by about one radian. A face does not turn, two edges that cross turn less the more they do, and
+// things roll about edges and points.
 fn radius_of(pair: Pair, weights: vec4<f32>, gap: f32, sine: f32, edge: f32) -> f32 {
     var inside_a = 1u;
     var inside_b = 1u;

@@ -1,8 +1,9 @@
 // Parts: types, weights, pair, contact.
 //
-// Takes the rows of pairs away whose contact has the row of another pair (hash_contacts.wgsl), which asks for at least as much. What
-// has no row does not press. Contacts that share their place in the table with another one keep all their rows: that costs
-// time and changes no solution, for the same row twice asks for what it asks for once.
+// Takes the rows of pairs away whose contact has the row of another pair (hash_contacts.wgsl), which asks for
+// at least as much. What has no row does not press. Contacts that share their place in the table with another
+// one keep all their rows: that costs time and changes no solution, for the same row twice asks for what it
+// asks for once.
 
 struct Params {
     capacity: u32,

@@ -1,7 +1,7 @@
 // Parts: types, weights, pair.
 //
-// Which candidates get a contact row: those in range that press, or whose gap would be too small at the last aim. What
-// gets no row does not press any more, and gives back its color.
+// Which candidates get a contact row: those in range that press, or whose gap would be too small at the last
+// aim. What gets no row does not press any more, and gives back its color.
 
 struct Params {
     capacity: u32,

@@ -1,7 +1,7 @@
 // Parts: types.
 //
-// Boxes of the elements of a tree: around the trust regions of their vertices, with their margins. They are integers,
-// so they contain exactly what they should.
+// Boxes of the elements of a tree: around the trust regions of their vertices, with their margins. They are
+// integers, so they contain exactly what they should.
 
 struct Params {
     slots: u32,

@@ -1,6 +1,7 @@
 // Parts: types.
 //
-// Before a search replaces the candidates: keeps them with their states, so that those that are found again inherit.
+// Before a search replaces the candidates: keeps them with their states, so that those that are found again
+// inherit.
 
 struct Params {
     rows: u32,

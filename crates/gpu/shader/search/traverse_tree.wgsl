@@ -2,8 +2,9 @@
 //
 // Finds the partners of elements: the elements of a tree whose boxes overlap theirs.
 //
-// It runs twice, since nobody knows before how many there are: first it counts those of each query, then, with the sums of
-// these counts, each goes to its place in the list of candidates. Their order depends on the tree alone.
+// It runs twice, since nobody knows before how many there are: first it counts those of each query, then,
+// with the sums of these counts, each goes to its place in the list of candidates. Their order depends on the
+// tree alone.
 
 struct Params {
     queries: u32,

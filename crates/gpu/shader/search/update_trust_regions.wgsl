@@ -6,8 +6,8 @@ struct Params {
     vertices: u32,
     // 1: all trust regions are new.
     all: u32,
-    // By how much a ball is larger than half of the path, and its smallest radius, in local edge lengths. Any numbers
-    // of at least 0 are safe.
+    // By how much a ball is larger than half of the path, and its smallest radius, in local edge lengths. Any
+    // numbers of at least 0 are safe.
     slack: f32,
     smallest: f32,
 }
@@ -21,7 +21,8 @@ struct Params {
 
 // Share of a ball within which paths stay. The rest covers the rounding of this test and of the step.
 const COVERED: f32 = 0.998;
-// Added to the radius: a ball that is not at rest is so large that a fraction 0.002 of it exceeds all rounding.
+// Added to the radius: a ball that is not at rest is so large that a fraction 0.002 of it exceeds all
+// rounding.
 const ROOM: f32 = 4096.0;
 
 @compute @workgroup_size(256)

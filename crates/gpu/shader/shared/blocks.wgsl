@@ -1,5 +1,5 @@
-// What the kernels of Hessians share. An element writes the blocks that couple two of its nodes; those of one node
-// follow, since translations store no energy.
+// What the kernels of Hessians share. An element writes the blocks that couple two of its nodes; those of one
+// node follow, since translations store no energy.
 
 struct ElementParams {
     elements: u32,

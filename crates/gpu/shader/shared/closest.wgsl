@@ -1,6 +1,6 @@
-// Closest points of two elements, in f32. They need not be accurate: what is certified is the width of a slab along
-// some direction, whatever that is. All results are finite: coordinates are below 2^31, so that products of four of them
-// are numbers, and no divisor is zero.
+// Closest points of two elements, in f32. They need not be accurate: what is certified is the width of a slab
+// along some direction, whatever that is. All results are finite: coordinates are below 2^31, so that
+// products of four of them are numbers, and no divisor is zero.
 
 struct Closest {
     // From the point of side b to the point of side a.
@@ -25,8 +25,8 @@ fn closest_vertex_edge(a: vec3<f32>, b: vec3<f32>) -> Closest {
     return Closest(-(a + (b - a) * t), vec3<f32>(1.0 - t, t, 0.0));
 }
 
-// A point at the origin and a triangle, by the regions in which the point projects (Ericson, "Real-Time Collision
-// Detection", 2004, section 5.1.5).
+// A point at the origin and a triangle, by the regions in which the point projects (Ericson, "Real-Time
+// Collision Detection", 2004, section 5.1.5).
 fn closest_vertex_triangle(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> Closest {
     let ab = b - a;
     let ac = c - a;

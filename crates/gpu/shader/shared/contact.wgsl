@@ -1,14 +1,16 @@
-// What tells a contact from others: the vertices of the features that its closest points are on. A vertex near a vertex of a
-// mesh is near all triangles and edges around it, and the closest points are the same. Stages that use it have `edges`,
-// `triangles`, `candidates` and `separations` among their bindings.
+// What tells a contact from others: the vertices of the features that its closest points are on. A vertex
+// near a vertex of a mesh is near all triangles and edges around it, and the closest points are the same.
+// Stages that use it have `edges`, `triangles`, `candidates` and `separations` among their bindings.
 
 // A closest point is on the border of its primitive if a weight is at most this.
 const ON_BORDER: f32 = 1e-6;
 
 struct Contact {
-    // Whether other pairs can have the same closest points: not if these are inside of two edges or of a triangle.
+    // Whether other pairs can have the same closest points: not if these are inside of two edges or of a
+    // triangle.
     is_shared: bool,
-    // The vertex of one side, and the vertices of the other side in the order of their numbers; NONE for no second one.
+    // The vertex of one side, and the vertices of the other side in the order of their numbers; NONE for no
+    // second one.
     vertices: vec3<u32>,
 }
 

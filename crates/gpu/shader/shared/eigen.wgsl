@@ -1,6 +1,6 @@
-// Filters negative eigenvalues of a symmetric matrix of the order ORDER, stored row by row, by Jacobi's method:
-// rotations of pairs of coordinates make it diagonal (G. H. Golub and C. F. Van Loan, "Matrix Computations", section
-// 8.5).
+// Filters negative eigenvalues of a symmetric matrix of the order ORDER, stored row by row, by Jacobi's
+// method: rotations of pairs of coordinates make it diagonal (G. H. Golub and C. F. Van Loan, "Matrix
+// Computations", section 8.5).
 
 // Entries beside the diagonal up to this share of the largest entry count as zero.
 const NEGLIGIBLE: f32 = 1e-8;

@@ -36,8 +36,8 @@ const NONE: u32 = 0xffffffffu;
 // Lengths up to this count as zero.
 const TINY: f32 = 1e-18;
 
-// Divisors that are ratios of lengths are at least this large. It limits the curvatures of elements crushed to less
-// than a twentieth.
+// Divisors that are ratios of lengths are at least this large. It limits the curvatures of elements crushed
+// to less than a twentieth.
 const MIN_RATIO: f32 = 0.05;
 
 // The unit eigenvector (c, s) of the larger eigenvalue of [[a, b], [b, d]]: a Jacobi rotation.

@@ -1,5 +1,5 @@
-// What the kernels of elements' gradients share: see potential/layout.rs. An element writes the gradient of its energy by
-// each of its nodes. They sum to zero, since translations store no energy.
+// What the kernels of elements' gradients share: see potential/layout.rs. An element writes the gradient of
+// its energy by each of its nodes. They sum to zero, since translations store no energy.
 
 struct GradientParams {
     elements: u32,

@@ -1,5 +1,5 @@
-// What the kernels of the preconditioner's groups share: see assembly/layout.rs. A group moves as a rigid body: a
-// node at the arm o from its center, over its size, moves by shift + spin x o.
+// What the kernels of the preconditioner's groups share: see assembly/layout.rs. A group moves as a rigid
+// body: a node at the arm o from its center, over its size, moves by shift + spin x o.
 
 struct Frame {
     center: vec3<i32>,

@@ -1,5 +1,5 @@
-// The largest of a number of each thread, and of partial results in `sums`: the same in any order. Numbers are not
-// negative.
+// The largest of a number of each thread, and of partial results in `sums`: the same in any order. Numbers
+// are not negative.
 
 var<workgroup> shared_largest: array<f32, THREADS>;
 

@@ -1,4 +1,5 @@
-// log(1 + x) for x > -1 to a few ulp of its own, also near 0: the functions of the language have an absolute error there.
+// log(1 + x) for x > -1 to a few ulp of its own, also near 0: the functions of the language have an absolute
+// error there.
 fn log_1p(x: f32) -> f32 {
     let bits = bitcast<u32>(max(1.0 + x, 1e-30));
     var exponent = i32(bits >> 23u) - 127;

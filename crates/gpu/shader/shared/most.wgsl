@@ -1,5 +1,6 @@
-// The largest of WORDS numbers of each of the 256 threads of a workgroup. One atomic operation per workgroup follows in place
-// of one per thread: those on one address wait for each other. A maximum is the same in any order.
+// The largest of WORDS numbers of each of the 256 threads of a workgroup. One atomic operation per workgroup
+// follows in place of one per thread: those on one address wait for each other. A maximum is the same in any
+// order.
 
 var<workgroup> most: array<u32, 256 * WORDS>;
 

@@ -1,5 +1,5 @@
-// The normal n = scale f1 x f2 of a triangle with the columns f1 and f2 of F: a unit vector, shorter only for crushed
-// triangles. Its length falls below about the share `crushed` of the rest area.
+// The normal n = scale f1 x f2 of a triangle with the columns f1 and f2 of F: a unit vector, shorter only for
+// crushed triangles. Its length falls below about the share `crushed` of the rest area.
 
 struct Normal {
     // m = f1 x f2, and m^2 + crushed^2.

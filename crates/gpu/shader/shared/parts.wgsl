@@ -1,6 +1,6 @@
-// Partial sums of energies: see potential/layout.rs. Every workgroup sums over its threads in a fixed order and writes one
-// part: the energy at the reference, its change to the trial, and of the sizes of what the change is made of the sum and the
-// sum of their squares.
+// Partial sums of energies: see potential/layout.rs. Every workgroup sums over its threads in a fixed order
+// and writes one part: the energy at the reference, its change to the trial, and of the sizes of what the
+// change is made of the sum and the sum of their squares.
 
 struct EnergyParams {
     // Elements or nodes.

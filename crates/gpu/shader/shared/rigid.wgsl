@@ -1,6 +1,6 @@
-// From the rigid motions of the eight children of a domain to that of the parent: with a child's link l, the way from the
-// parent's center over the parent's size, and the ratio s of sizes, child shift = shift + spin x l, child spin = s spin.
-// A link is (l, s).
+// From the rigid motions of the eight children of a domain to that of the parent: with a child's link l, the
+// way from the parent's center over the parent's size, and the ratio s of sizes, child shift = shift + spin x
+// l, child spin = s spin. A link is (l, s).
 
 // Of up to four domains at once.
 var<workgroup> child_links: array<f32, 128>;

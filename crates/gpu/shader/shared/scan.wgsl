@@ -1,5 +1,5 @@
-// Sums over the 256 threads of a workgroup. They saturate: a sum that wraps could be less than what a list holds, and what is
-// missing from the list would not be noticed.
+// Sums over the 256 threads of a workgroup. They saturate: a sum that wraps could be less than what a list
+// holds, and what is missing from the list would not be noticed.
 
 var<workgroup> sums: array<u32, 256>;
 
@@ -7,8 +7,8 @@ fn saturating_sum(a: u32, b: u32) -> u32 {
     return a + min(b, 0xffffffffu - a);
 }
 
-// The sum of the counts of the threads before this one; afterwards `sums[255]` holds that of all. All threads call it, and
-// wait before they call it again.
+// The sum of the counts of the threads before this one; afterwards `sums[255]` holds that of all. All threads
+// call it, and wait before they call it again.
 fn sum_before(thread: u32, count: u32) -> u32 {
     sums[thread] = count;
     workgroupBarrier();

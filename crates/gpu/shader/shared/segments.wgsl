@@ -1,5 +1,5 @@
-// Sums over the segments of a window of 256 nodes: nodes of one component. In a fixed order: sums of neighbors, then of
-// these, and so on.
+// Sums over the segments of a window of 256 nodes: nodes of one component. In a fixed order: sums of
+// neighbors, then of these, and so on.
 
 const WINDOW: u32 = 256u;
 const NO_SEGMENT: u32 = 0xffffffffu;

@@ -5,7 +5,8 @@ const ORTHOGONAL: f32 = 3e-7;
 
 const SVD_SWEEPS: u32 = 8u;
 
-// The columns of F V, made orthogonal by one-sided Jacobi rotations, and V (Demmel and Veselic 1992); sorted by length.
+// The columns of F V, made orthogonal by one-sided Jacobi rotations, and V (Demmel and Veselic 1992); sorted
+// by length.
 struct Decomposition {
     b: array<vec3<f32>, 3>,
     v: array<vec3<f32>, 3>,

@@ -1,5 +1,5 @@
-// What the kernels of strands share: see assembly/layout.rs. The energy of an element is k/2 (|w| - w0)^2 with
-// w = c (x2 - x1) - a (x1 - x0); of an edge, whose nodes 0 and 1 are the same, a is 0.
+// What the kernels of strands share: see assembly/layout.rs. The energy of an element is k/2 (|w| - w0)^2
+// with w = c (x2 - x1) - a (x1 - x0); of an edge, whose nodes 0 and 1 are the same, a is 0.
 
 struct Strand {
     nodes: array<u32, 3>,

@@ -69,7 +69,8 @@ fn stress_in(stiffness: array<f32, 4>, strain: vec3<f32>, c: f32, s: f32) -> vec
     );
 }
 
-// The increment of Green's strain (11, 22, 12) to F = (f0, f1), which has changed by (d0, d1), without cancellation.
+// The increment of Green's strain (11, 22, 12) to F = (f0, f1), which has changed by (d0, d1), without
+// cancellation.
 fn increment(f0: vec3<f32>, f1: vec3<f32>, d0: vec3<f32>, d1: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(
         0.5 * dot(d0, 2.0 * f0 - d0),

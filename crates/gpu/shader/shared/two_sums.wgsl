@@ -1,4 +1,5 @@
-// Two sums over partial sums at once, each in the order of sum.wgsl: threads wait for each other half as often.
+// Two sums over partial sums at once, each in the order of sum.wgsl: threads wait for each other half as
+// often.
 
 var<workgroup> shared_pairs: array<vec2<f32>, THREADS>;
 

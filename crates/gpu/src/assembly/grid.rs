@@ -1,9 +1,10 @@
-//! Positions of nodes as integers, so that differences of near positions keep their digits in single precision.
+//! Positions of nodes as integers, so that differences of near positions keep their digits in single
+//! precision.
 
 use bowknot_geometry::Vector;
 
-/// Largest coordinate of what moves on a grid; that of the state that the grid is made for is half of it. Differences
-/// of two fit into 32 bits, and so do differences of these.
+/// Largest coordinate of what moves on a grid; that of the state that the grid is made for is half of it.
+/// Differences of two fit into 32 bits, and so do differences of these.
 const REACH: f64 = (1u32 << 29) as f64;
 
 /// A grid about the nodes of a state.
@@ -44,7 +45,8 @@ impl StateGrid {
         grid
     }
 
-    /// How far a position is from the center, over what the grid reaches at most: positions up to 1 are on the grid.
+    /// How far a position is from the center, over what the grid reaches at most: positions up to 1 are on
+    /// the grid.
     pub fn reach(&self, x: &Vector) -> f64 {
         (x - self.center).amax() / (self.quantum * (REACH - 1.0))
     }

@@ -1,4 +1,5 @@
-//! Which groups of the preconditioner are coupled, on every level: what the host prepares for a set of free nodes.
+//! Which groups of the preconditioner are coupled, on every level: what the host prepares for a set of free
+//! nodes.
 
 use super::layout::{Chunk, Part};
 use crate::layout::NONE;
@@ -7,7 +8,8 @@ use bowknot_dynamics::{ElementModel, LinearSpring};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// The groups, and their pairs that elements join. Level 0 has the groups of patches, level 1 the patches, and so on.
+/// The groups, and their pairs that elements join. Level 0 has the groups of patches, level 1 the patches,
+/// and so on.
 #[derive(Debug, Default)]
 pub struct Hierarchy {
     pub levels: Vec<Level>,
@@ -76,7 +78,8 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Adds the pairs of groups that elements join, those within a domain only if `within`. Returns their places.
+    /// Adds the pairs of groups that elements join, those within a domain only if `within`. Returns their
+    /// places.
     fn add_pairs_of_nodes(
         &mut self,
         model: &ElementModel,
@@ -201,8 +204,8 @@ pub struct Touching {
     pub chunks: usize,
 }
 
-/// Where the lists of springs of the domains of a level end, and the lists: ascending springs, each once per domain. `places`
-/// are the slots of the nodes of each spring.
+/// Where the lists of springs of the domains of a level end, and the lists: ascending springs, each once per
+/// domain. `places` are the slots of the nodes of each spring.
 fn touching_level(level: &Level, places: &[[u32; 4]]) -> [Vec<u32>; 2] {
     // Domains have a power of two of slots.
     let bits = (level.width * CHILDREN).trailing_zeros();

@@ -1,12 +1,13 @@
-//! The data of assembly that host, kernels and twins share. A test compares every struct with what the shaders declare
-//! (`stages/tests.rs`).
+//! The data of assembly that host, kernels and twins share. A test compares every struct with what the
+//! shaders declare (`stages/tests.rs`).
 //!
-//! Positions are integers, multiples of a quantum, so that differences of near positions keep 24 bits of their own.
-//! Units are SI.
+//! Positions are integers, multiples of a quantum, so that differences of near positions keep 24 bits of
+//! their own. Units are SI.
 
 use bytemuck::{Pod, Zeroable};
 
-/// Springs of a domain: their places in the list, the slots of a group of its level, its first group and the frame of that.
+/// Springs of a domain: their places in the list, the slots of a group of its level, its first group and the
+/// frame of that.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Chunk {

@@ -1,5 +1,5 @@
-//! Assembly of the matrices of the dynamics on the device, and of their preconditioner: each element writes its
-//! blocks, then each block of the matrix sums its share in a fixed order.
+//! Assembly of the matrices of the dynamics on the device, and of their preconditioner: each element writes
+//! its blocks, then each block of the matrix sums its share in a fixed order.
 //!
 //! | module | holds |
 //! |---|---|

@@ -1,4 +1,5 @@
-//! What the host prepares once for a model: elements, and which of their blocks each block of the matrix sums.
+//! What the host prepares once for a model: elements, and which of their blocks each block of the matrix
+//! sums.
 
 use super::layout::{Bend, Entry, Membrane, Strand, Tetrahedron};
 use crate::layout::NONE;
@@ -14,8 +15,8 @@ pub struct Plan {
     pub bends: Vec<Bend>,
     pub tetrahedra: Vec<Tetrahedron>,
     pub strands: Vec<Strand>,
-    /// Of each node that only strands act on the node, where its entries in this vector begin and end; then the entries: three times a
-    /// strand plus the place of the node in it.
+    /// Of each node that only strands act on the node, where its entries in this vector begin and end; then
+    /// the entries: three times a strand plus the place of the node in it.
     pub strand_rows: Vec<u32>,
     /// Nodes that only strands act on.
     pub strand_nodes: usize,
@@ -99,8 +100,8 @@ impl Plan {
         plan
     }
 
-    /// Lists the strands of each node that only strands act on: the matrix leaves its row to them. Rows of other nodes, such as
-    /// those where a strand is sewn to cloth, have all of their blocks.
+    /// Lists the strands of each node that only strands act on: the matrix leaves its row to them. Rows of
+    /// other nodes, such as those where a strand is sewn to cloth, have all of their blocks.
     fn add_strand_rows(&mut self, model: &ElementModel, structure: &mut PackedMatrix) {
         let mut others = vec![false; model.rest.len()];
         let mut mark = |nodes: &[u32]| {
@@ -128,8 +129,8 @@ impl Plan {
         self.strand_rows.extend(rows.values().flatten());
     }
 
-    /// The entries with flat bending, and the words of the matrix with its scalar entries, which `bending` and
-    /// `scalars` give pair by pair.
+    /// The entries with flat bending, and the words of the matrix with its scalar entries, which `bending`
+    /// and `scalars` give pair by pair.
     pub fn with_bending(&self, bending: &[f64], scalars: &[f64]) -> (Vec<Entry>, Vec<u32>) {
         let with =
             |(entry, pair): (&Entry, &u32)| Entry { bending: bending[*pair as usize] as f32, ..*entry };

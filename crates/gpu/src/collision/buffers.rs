@@ -1,5 +1,5 @@
-//! The buffers of a scene on an engine, and how they grow: by a quarter more than is needed, but not beyond what the
-//! device binds.
+//! The buffers of a scene on an engine, and how they grow: by a quarter more than is needed, but not beyond
+//! what the device binds.
 
 use crate::engine::Engine;
 use crate::error::GpuError;
@@ -68,7 +68,8 @@ pub struct Buffers {
     pub group_alphas: BufferId,
     pub balls: BufferId,
     pub control: BufferId,
-    /// What each step of a submission came to, and the workgroups of the dispatches of all but its first step.
+    /// What each step of a submission came to, and the workgroups of the dispatches of all but its first
+    /// step.
     pub reports: BufferId,
     pub arguments: BufferId,
     /// Where the candidates of each row of the search begin, and where the last ones end; sums by block.
@@ -112,8 +113,8 @@ pub struct Buffers {
 /// Which candidates have a row, one entry per candidate.
 #[derive(Clone, Copy, Debug)]
 pub struct SelectionBuffers {
-    /// Whether each candidate has a row, then the places of the rows by candidate, and where the last one ends; sums by
-    /// block.
+    /// Whether each candidate has a row, then the places of the rows by candidate, and where the last one
+    /// ends; sums by block.
     pub starts: BufferId,
     pub blocks: BufferId,
 }
@@ -126,7 +127,8 @@ pub struct RowBuffers {
     pub pairs: BufferId,
     /// Rows in the order of their buckets and colors.
     pub order: BufferId,
-    /// Colors in use at each vertex, rows that wait for a color, and the keys of the rows that hold each vertex.
+    /// Colors in use at each vertex, rows that wait for a color, and the keys of the rows that hold each
+    /// vertex.
     pub colors_in_use: BufferId,
     pub waiting: BufferId,
     pub claims: BufferId,
@@ -202,8 +204,8 @@ impl Buffers {
         })
     }
 
-    /// Makes room for so many candidates and a quarter more; what was there is lost. The rows of the step stay, and what
-    /// was kept from before the search.
+    /// Makes room for so many candidates and a quarter more; what was there is lost. The rows of the step
+    /// stay, and what was kept from before the search.
     ///
     /// # Errors
     /// The device has no memory, or does not bind as much.
@@ -263,7 +265,8 @@ impl Buffers {
         Ok(())
     }
 
-    /// Makes room for a step that is not made again: to select among all present candidates, and to keep these.
+    /// Makes room for a step that is not made again: to select among all present candidates, and to keep
+    /// these.
     ///
     /// # Errors
     /// The device has no memory.
@@ -321,7 +324,8 @@ impl RowBuffers {
     }
 }
 
-/// Most candidates for which an engine has room: the largest of the buffers with an entry per candidate decides.
+/// Most candidates for which an engine has room: the largest of the buffers with an entry per candidate
+/// decides.
 pub fn most_candidates(engine: &impl Engine) -> usize {
     engine.most_words() / words::<Separation>(1)
 }

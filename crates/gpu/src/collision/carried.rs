@@ -20,8 +20,8 @@ pub struct Carried {
     pub friction: Vector,
 }
 
-/// Entries in the order of the search in `warm_start.wgsl`. Those that do not press, or have no finite numbers in single
-/// precision, are left out, and all but the first of a pair.
+/// Entries in the order of the search in `warm_start.wgsl`. Those that do not press, or have no finite
+/// numbers in single precision, are left out, and all but the first of a pair.
 pub fn sorted(grid: &Grid, carried: &[Carried]) -> Vec<CarriedState> {
     let entry = |pair: &Carried| {
         let candidate = pair.candidate.ordered();
@@ -88,7 +88,8 @@ impl CarriedList {
         Ok(Self { buffer, capacity, count: 0 })
     }
 
-    /// Gives new candidates what their pairs carry, if any does. [`kernels::DESIRED_DISTANCES`] keeps it when it completes their states.
+    /// Gives new candidates what their pairs carry, if any does. [`kernels::DESIRED_DISTANCES`] keeps it when
+    /// it completes their states.
     pub fn record(&self, b: &Buffers, recording: &mut Recording) {
         if self.count == 0 {
             return;

@@ -1,4 +1,5 @@
-//! Sweeps over clusters of edges on a device, beside their twin: with as many edges as threads keep, and with more.
+//! Sweeps over clusters of edges on a device, beside their twin: with as many edges as threads keep, and with
+//! more.
 
 use super::*;
 use crate::adapter::Adapter;
@@ -12,8 +13,8 @@ fn all_pairs(count: u32) -> Vec<[u32; 2]> {
     (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).collect()
 }
 
-/// Sweeps twice over the edges, of which some are too long, and applies the multipliers once. Vertices whose number is a
-/// multiple of seven do not move.
+/// Sweeps twice over the edges, of which some are too long, and applies the multipliers once. Vertices whose
+/// number is a multiple of seven do not move.
 fn sweep(edges: &[[u32; 2]], vertices: u32) {
     let mut random = fastrand::Rng::with_seed(7);
     let points: Vec<Point> = (0..vertices)

@@ -1,14 +1,15 @@
 //! The end of a call: what the host reads, and the pairs that are within contact range there.
 //!
-//! **No pair within range is missing.** The boxes of the last search hold the trust regions of the vertices and, around
-//! them, their margins; a pair that it did not list has boxes apart along an axis. All vertices are still in their
-//! regions: a step moves none out of its region, or searches first ([`crate::kernels::update_trust_regions`]); safety rests on the
-//! same. Both elements lie within the boxes of their regions, so their distance exceeds both margins, which is the largest
-//! range of any of their pairs. In the same way a half-space that was not listed is farther from the whole region of a
-//! vertex than twice its margin, the rounding of the plane included. So all pairs within range are candidates, also after
-//! the last move. Of the candidates, `mark_near_pairs` drops those alone that a certified slab holds farther apart than both margins:
-//! a lower bound of the distance, rounding included. The host computes the distances of the others in double precision and
-//! drops what is out of range.
+//! **No pair within range is missing.** The boxes of the last search hold the trust regions of the vertices
+//! and, around them, their margins; a pair that it did not list has boxes apart along an axis. All vertices
+//! are still in their regions: a step moves none out of its region, or searches first
+//! ([`crate::kernels::update_trust_regions`]); safety rests on the same. Both elements lie within the boxes
+//! of their regions, so their distance exceeds both margins, which is the largest range of any of their
+//! pairs. In the same way a half-space that was not listed is farther from the whole region of a vertex than
+//! twice its margin, the rounding of the plane included. So all pairs within range are candidates, also after
+//! the last move. Of the candidates, `mark_near_pairs` drops those alone that a certified slab holds farther
+//! apart than both margins: a lower bound of the distance, rounding included. The host computes the distances
+//! of the others in double precision and drops what is out of range.
 
 use super::buffers::words;
 use super::record_search::ListPlaces;
@@ -73,8 +74,8 @@ impl<E: Engine> Collision<E> {
         ]
     }
 
-    /// Lists the pairs that may be within range at the present positions. The call may go on after it: the next step computes
-    /// all of what it writes anew.
+    /// Lists the pairs that may be within range at the present positions. The call may go on after it: the
+    /// next step computes all of what it writes anew.
     pub(super) fn record_end(&mut self, recording: &mut Recording) {
         let control = words::<Control>(1);
         let params = kernels::copy_words::Params { words: control as u32 };
@@ -114,8 +115,8 @@ impl<E: Engine> Collision<E> {
         );
     }
 
-    /// The pairs of a list that was read with [`Control`], sorted. If there was no room for all of them, they are gathered
-    /// once more.
+    /// The pairs of a list that was read with [`Control`], sorted. If there was no room for all of them, they
+    /// are gathered once more.
     fn near_pairs(&mut self, [control, list]: [Vec<u32>; 2]) -> Result<Vec<Candidate>, GpuError> {
         let count = bytemuck::cast_slice::<u32, Control>(&control)[0].rows as usize;
         let list = if count <= self.near.capacity {

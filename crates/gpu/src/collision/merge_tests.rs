@@ -1,4 +1,5 @@
-//! Contacts that several pairs have: one of them keeps the row, by the twins of `hash_contacts` and `merge_rows`.
+//! Contacts that several pairs have: one of them keeps the row, by the twins of `hash_contacts` and
+//! `merge_rows`.
 #![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
 
 use super::buffers::words;
@@ -120,7 +121,8 @@ fn what_loses_its_row_has_that_of_another_pair_with_the_same_closest_points() {
                 assert!(!pressed(c) || own.iter().any(|r| pressed(*r)));
                 assert_eq!((states[c].multiplier, states[c].friction), (0.0, [0.0; 3]));
                 if places == 1 << 20 {
-                    // Where each contact has a place of its own, what has a second row asks for more than the first.
+                    // Where each contact has a place of its own, what has a second row asks for more than the
+                    // first.
                     let wanted = || own.iter().map(|c| scene.separations[*c].wanted);
                     let least = wanted().fold(f32::INFINITY, f32::min);
                     assert_eq!(wanted().filter(|wanted| *wanted == least).count(), 1);

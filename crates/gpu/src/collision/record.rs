@@ -7,13 +7,13 @@ use crate::kernels::stop_rule::{AFTER_SEARCH, AFTER_STEP};
 use crate::layout::Block;
 use crate::recording::{Phase, Recording};
 
-/// By how much a trust region is larger than half of the path, in local edge lengths times the [factor](Collision) of the
-/// call.
+/// By how much a trust region is larger than half of the path, in local edge lengths times the
+/// [factor](Collision) of the call.
 const SLACK: f32 = 0.05;
 
 impl<E: Engine> Collision<E> {
-    /// The dispatches of a step, in order. `first`: it is the first one of its submission, of which so many dispatches
-    /// can be left out.
+    /// The dispatches of a step, in order. `first`: it is the first one of its submission, of which so many
+    /// dispatches can be left out.
     pub(super) fn record_step(&self, first: bool, dispatches: usize, recording: &mut Recording) {
         self.record_reset(first, recording);
         recording.begin_phase(Phase::Backward);
@@ -29,8 +29,8 @@ impl<E: Engine> Collision<E> {
         self.record_stop_rule(AFTER_STEP, dispatches, recording);
     }
 
-    /// The first search of a call, without a step: along the ways to the targets, so that the rows of the first step know
-    /// what it meets. `dispatches` as for a step.
+    /// The first search of a call, without a step: along the ways to the targets, so that the rows of the
+    /// first step know what it meets. `dispatches` as for a step.
     pub(super) fn record_first_search(&self, dispatches: usize, recording: &mut Recording) {
         self.record_reset(true, recording);
         self.record_paths(recording);
@@ -110,8 +110,8 @@ impl<E: Engine> Collision<E> {
         );
     }
 
-    /// Contact geometry of all candidates at the present positions; after a search only if there was one, for nothing has
-    /// moved since the geometry of the backward step.
+    /// Contact geometry of all candidates at the present positions; after a search only if there was one, for
+    /// nothing has moved since the geometry of the backward step.
     pub(super) fn record_geometry(&self, after_search: bool, recording: &mut Recording) {
         self.record_separations(after_search, recording);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);

@@ -150,7 +150,8 @@ impl<E: Engine> Collision<E> {
         );
     }
 
-    /// Divides the rows into buckets, and those of each into colors: rows of one color share no vertex that moves.
+    /// Divides the rows into buckets, and those of each into colors: rows of one color share no vertex that
+    /// moves.
     fn record_colors(&self, recording: &mut Recording) {
         let (b, r, capacity) = (&self.buffers, &self.buffers.rows, self.buffers.row_capacity as u32);
         recording.dispatch(

@@ -8,7 +8,8 @@ use crate::kernels::scan_counts::CANDIDATES;
 use crate::layout::Kind;
 use crate::recording::{BufferId, Recording};
 
-/// A list whose entries get their places: counts by row, which become where each row begins, and sums by block.
+/// A list whose entries get their places: counts by row, which become where each row begins, and sums by
+/// block.
 pub(super) struct ListPlaces {
     pub starts: BufferId,
     pub blocks: BufferId,
@@ -74,8 +75,8 @@ impl<E: Engine> Collision<E> {
         }
     }
 
-    /// Keeps the present candidates with their states. If the step is made again they have been kept already, and the
-    /// present ones are not whole.
+    /// Keeps the present candidates with their states. If the step is made again they have been kept already,
+    /// and the present ones are not whole.
     pub(super) fn record_saved_candidates(&self, recording: &mut Recording) {
         if self.again {
             return;

@@ -11,7 +11,8 @@ use std::collections::{HashMap, HashSet};
 
 const DELTA: f64 = 2e-3;
 
-/// Sheets with different edges above each other, closer than they should be, and particles above a large triangle.
+/// Sheets with different edges above each other, closer than they should be, and particles above a large
+/// triangle.
 struct Scene {
     model: CollisionModel,
     x: Vec<Point>,

@@ -1,5 +1,5 @@
-//! The slab that `separate` certifies between the sides of a pair lies there, on the device: by double precision, in which the
-//! differences of grid points and their products with a normal are exact to 1e-15.
+//! The slab that `separate` certifies between the sides of a pair lies there, on the device: by double
+//! precision, in which the differences of grid points and their products with a normal are exact to 1e-15.
 #![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
 
 use super::buffers::words;

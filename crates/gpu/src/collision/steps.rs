@@ -8,8 +8,8 @@ use crate::layout::Control;
 use crate::recording::Recording;
 use std::mem::take;
 
-/// Smallest factor on travel and trust regions. Candidates are then little more than the pairs within contact range, and
-/// steps are still longer than the moves that count as progress when a call may have stalled.
+/// Smallest factor on travel and trust regions. Candidates are then little more than the pairs within contact
+/// range, and steps are still longer than the moves that count as progress when a call may have stalled.
 const SMALLEST_TRAVEL: f32 = 1.0 / 64.0;
 
 /// So many contact rows, and a quarter, are read more than the last call had.
@@ -21,8 +21,9 @@ impl Settings {
         self.polish_sweeps > self.sweeps
     }
 
-    /// Sweeps of a step that polishes after so many of the call that did. Most edges need few; in large bodies that hang
-    /// on a few vertices no number of sweeps within clusters takes the place of many over all.
+    /// Sweeps of a step that polishes after so many of the call that did. Most edges need few; in large
+    /// bodies that hang on a few vertices no number of sweeps within clusters takes the place of many over
+    /// all.
     pub(super) fn sweeps_to_polish(&self, polished: usize) -> usize {
         let doubled = 1usize.checked_shl(polished as u32).and_then(|factor| self.sweeps.checked_mul(factor));
         doubled.map_or(self.polish_sweeps, |sweeps| sweeps.min(self.polish_sweeps))
@@ -44,9 +45,9 @@ impl<E: Engine> Collision<E> {
         Ok(self.steps(1)?[0])
     }
 
-    /// Makes up to `most` steps, at least one. The host submits them together and reads what they came to once; after
-    /// the end of the call ([`Call::stop`](super::Call::stop)) none is made. The states are the same bits for any
-    /// `most`.
+    /// Makes up to `most` steps, at least one. The host submits them together and reads what they came to
+    /// once; after the end of the call ([`Call::stop`](super::Call::stop)) none is made. The states are the
+    /// same bits for any `most`.
     ///
     /// # Errors
     /// As [`Self::step`].
@@ -78,8 +79,8 @@ impl<E: Engine> Collision<E> {
         self.expected_steps[usize::from(self.polishes)]
     }
 
-    /// Submits steps, after a search if the call begins. Adds the reports of those that were made, and makes room if
-    /// one was not because a buffer was too small.
+    /// Submits steps, after a search if the call begins. Adds the reports of those that were made, and makes
+    /// room if one was not because a buffer was too small.
     fn submit(&mut self, steps: usize, reports: &mut Vec<StepReport>) -> Result<Control, CollisionError> {
         if self.fresh || !self.again {
             self.buffers.make_room_for_step(&mut self.engine)?;
@@ -88,7 +89,8 @@ impl<E: Engine> Collision<E> {
         let mut recording = self.record_submission(steps)?;
         let control = (self.buffers.control, words::<Control>(1));
         let mut read = vec![control, (self.buffers.reports, words::<Control>(steps))];
-        // The end of the call comes with it where the last call took no more submissions. Room was made above.
+        // The end of the call comes with it where the last call took no more submissions. Room was made
+        // above.
         self.submissions += 1;
         let [submissions, rows] = self.before;
         let ends = steps > 0 && self.submissions >= submissions && (self.fresh || !self.again);
@@ -125,8 +127,8 @@ impl<E: Engine> Collision<E> {
         Ok(control)
     }
 
-    /// Notes how many steps a submission made, and whether it was halted then. As many steps are expected as there were
-    /// before the last halt, and from there on as many as there have been.
+    /// Notes how many steps a submission made, and whether it was halted then. As many steps are expected as
+    /// there were before the last halt, and from there on as many as there have been.
     fn expect(&mut self, made: usize, halted: bool) {
         self.steps_in_a_row += made;
         self.expected_steps[usize::from(self.polishes)] = self.steps_in_a_row.max(1);
@@ -135,8 +137,8 @@ impl<E: Engine> Collision<E> {
         }
     }
 
-    /// The search of a call that begins, and steps. The device leaves out what comes after the end of the call or after a
-    /// buffer that is too small.
+    /// The search of a call that begins, and steps. The device leaves out what comes after the end of the
+    /// call or after a buffer that is too small.
     fn record_submission(&mut self, steps: usize) -> Result<Recording, GpuError> {
         let dispatches = steps * self.dispatches_per_step();
         self.buffers.make_room_for_steps(&mut self.engine, steps, dispatches)?;
@@ -192,8 +194,9 @@ impl<E: Engine> Collision<E> {
         recording
     }
 
-    /// Makes room for what did not fit. The step is made again with the trust regions that it has found, so that it has
-    /// the same bits as if there had been room. Where the device does not bind as much, it is made with smaller ones.
+    /// Makes room for what did not fit. The step is made again with the trust regions that it has found, so
+    /// that it has the same bits as if there had been room. Where the device does not bind as much, it is
+    /// made with smaller ones.
     fn make_room(&mut self, control: &Control) -> Result<(), GpuError> {
         let candidates = control.candidates as usize;
         self.again = true;

@@ -3,12 +3,13 @@
 use crate::grid::Grid;
 use crate::kernels::stop_rule;
 
-/// When a call ends: of the steps of a submission, those after its end are not made. A state meets the rule if it meets
-/// all of its conditions. The host, which looks at the same numbers, may end a call after any other submission.
+/// When a call ends: of the steps of a submission, those after its end are not made. A state meets the rule
+/// if it meets all of its conditions. The host, which looks at the same numbers, may end a call after any
+/// other submission.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// No vertex is as far from where the step wanted to go [m]; no prescribed vertex is held back otherwise than by
-    /// pairs.
+    /// No vertex is as far from where the step wanted to go [m]; no prescribed vertex is held back otherwise
+    /// than by pairs.
     pub distance: f64,
     /// The same of vertices that no pair holds back [m].
     pub unhindered: f64,
@@ -18,7 +19,8 @@ pub struct Stop {
     pub mean_residual: f64,
     /// Largest ratio of an edge's length to its limit [1].
     pub stretch_to_limit: f64,
-    /// Most steps beyond the rule, made while vertices are not yet where they should be and no contact presses.
+    /// Most steps beyond the rule, made while vertices are not yet where they should be and no contact
+    /// presses.
     pub finishing_steps: usize,
 }
 
@@ -33,9 +35,9 @@ impl Stop {
         finishing_steps: 0,
     };
 
-    /// The rule in quanta, with the length [m] below which and the ratio of an edge to its limit above which the next
-    /// step polishes. A length on the device is below a limit here if and only if it is below it in double precision,
-    /// since the quantum is a power of two.
+    /// The rule in quanta, with the length [m] below which and the ratio of an edge to its limit above which
+    /// the next step polishes. A length on the device is below a limit here if and only if it is below it in
+    /// double precision, since the quantum is a power of two.
     pub(super) fn params(&self, grid: &Grid, polishing: Option<(f64, f64)>) -> stop_rule::Params {
         let below = |limit: f64| rounded_up(limit / grid.quantum());
         let (distance, stretch) = polishing.unwrap_or_default();

@@ -303,7 +303,8 @@ impl Room {
 struct Calls {
     reports: Vec<StepReport>,
     ends: [End; 3],
-    /// Which buffers grew, and how many searches and steps after the first search were made again because of one.
+    /// Which buffers grew, and how many searches and steps after the first search were made again because of
+    /// one.
     grew: [bool; 4],
     again: usize,
     /// Candidates that the first search has found.
@@ -544,7 +545,8 @@ fn a_call_that_starts_from_what_the_last_one_carried_has_nothing_left_to_do() {
         half_space_frictions: &[0.8],
         ..Constraints::default()
     };
-    // At rest the grains are far from each other, so that they keep their distance though they are of one body.
+    // At rest the grains are far from each other, so that they keep their distance though they are of one
+    // body.
     let rest: Vec<Point> = x.iter().map(|x| x * 10.0).collect();
     let engine = TwinEngine::new();
     let mut collision =
@@ -577,7 +579,8 @@ fn a_call_that_starts_from_what_the_last_one_carried_has_nothing_left_to_do() {
         let change = (row.multiplier - before.multiplier).abs() + (row.friction - before.friction).norm();
         assert!(change < 0.01 * weight, "{row:?} {before:?}");
     }
-    // Neither the order of the entries nor that of the grains of a pair matters, and what is no number is left out.
+    // Neither the order of the entries nor that of the grains of a pair matters, and what is no number is
+    // left out.
     let swapped = carried.iter().rev().map(|pair| match pair.candidate.kind() == Kind::VertexVertex as u32 {
         true => Carried {
             candidate: Candidate::new(Kind::VertexVertex, pair.candidate.b, pair.candidate.a()),
@@ -686,7 +689,8 @@ fn trees_are_ordered_anew_where_grains_have_mixed() {
     assert!(old > 0.5 * 1.5 * DELTA * f64::from(SIDE) && new < 4.0 * DELTA, "{old} {new}");
 }
 
-/// What is placed and begun is recorded and runs with the first steps. Nothing of it is lost, or names a buffer that is gone.
+/// What is placed and begun is recorded and runs with the first steps. Nothing of it is lost, or names a
+/// buffer that is gone.
 #[test]
 fn calls_that_are_refused_or_begun_anew_leave_nothing_behind() {
     let (model, x) = sheets();

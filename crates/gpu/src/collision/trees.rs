@@ -45,7 +45,8 @@ impl Trees {
         })
     }
 
-    /// Orders the elements anew, by other positions. The buffers stay, for their sizes depend on the numbers of elements alone.
+    /// Orders the elements anew, by other positions. The buffers stay, for their sizes depend on the numbers
+    /// of elements alone.
     pub fn reorder(&mut self, topology: &Topology, positions: &[GridPoint], recording: &mut Recording) {
         let Self { surface, edges, triangles, particles, strands } = self;
         let all = [surface, edges, triangles, particles, strands];
@@ -74,8 +75,8 @@ impl Trees {
         targets.into_iter()
     }
 
-    /// Kinds of pairs with the tree of the queries and the one that they search in. What the scene does not have takes
-    /// no part.
+    /// Kinds of pairs with the tree of the queries and the one that they search in. What the scene does not
+    /// have takes no part.
     pub fn searches(&self) -> impl Iterator<Item = (Kind, &DeviceTree, &DeviceTree)> {
         [
             (Kind::VertexVertex, &self.particles, &self.particles),

@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// Bytes between the parameters of two dispatches in a buffer: what every device can offset by.
 pub const PARAMS_STRIDE: u64 = 256;
 
-/// The stages that an engine has run, with bind groups of its buffers. Bind groups are kept, since iterations bind the
-/// same buffers again and again, and to make one takes the host longer than to record a dispatch.
+/// The stages that an engine has run, with bind groups of its buffers. Bind groups are kept, since iterations
+/// bind the same buffers again and again, and to make one takes the host longer than to record a dispatch.
 #[derive(Debug, Default)]
 pub struct Bindings {
     /// Places by the name of the stage.

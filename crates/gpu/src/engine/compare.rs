@@ -11,18 +11,18 @@ use bowknot_dynamics::DeviceWork;
 /// Bindings whose content depends on the order of the threads; no result does.
 const UNORDERED: [(&str, usize); 3] = [("sort_rows", 3), ("color_rows", 5), ("color_rows", 6)];
 
-/// Largest relative difference of two floating-point numbers, and, relative to the largest number of a buffer, the largest
-/// absolute one: rounding, which sums and differences of a stage amplify.
+/// Largest relative difference of two floating-point numbers, and, relative to the largest number of a
+/// buffer, the largest absolute one: rounding, which sums and differences of a stage amplify.
 const RELATIVE: f32 = 1e-4;
 const ABSOLUTE: f32 = 4e-6;
 
-/// Stages that amplify rounding, and the relative difference of their numbers: inverses of matrices do by their
-/// condition number.
+/// Stages that amplify rounding, and the relative difference of their numbers: inverses of matrices do by
+/// their condition number.
 const AMPLIFYING: [(&str, f32); 2] = [("invert_domains", 0.05), ("factor_diagonal", 0.05)];
 
-/// Stages that write displacements or widths of slabs, in steps of the grid, the smallest of these numbers that are meant, and by
-/// how many steps they may differ: where large terms cancel, what is left is their rounding. GPUs fuse products with sums,
-/// and divide by reciprocals.
+/// Stages that write displacements or widths of slabs, in steps of the grid, the smallest of these numbers
+/// that are meant, and by how many steps they may differ: where large terms cancel, what is left is their
+/// rounding. GPUs fuse products with sums, and divide by reciprocals.
 const STEPS_OF_THE_GRID: [(&str, f32, f32); 4] = [
     ("separate", 1e3, 128.0),
     ("sweep_rows", 0.0, 0.5),
@@ -50,8 +50,8 @@ pub struct Difference {
     pub device: u32,
 }
 
-/// Runs stages twice, and goes on with the results of the twins. A driver that computes something else than the twins, by
-/// more than rounding, is told by the stage that does so.
+/// Runs stages twice, and goes on with the results of the twins. A driver that computes something else than
+/// the twins, by more than rounding, is told by the stage that does so.
 #[derive(Debug)]
 pub struct ComparingEngine {
     device: DeviceEngine,

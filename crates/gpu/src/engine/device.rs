@@ -13,11 +13,12 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// Most dispatches of a command buffer. The device begins with the first ones while the host records the others.
+/// Most dispatches of a command buffer. The device begins with the first ones while the host records the
+/// others.
 const MOST_DISPATCHES: usize = 32;
 
-/// Seconds that the dispatches of a command buffer are meant to take at most: a driver takes a device for lost that does not
-/// answer for two.
+/// Seconds that the dispatches of a command buffer are meant to take at most: a driver takes a device for
+/// lost that does not answer for two.
 const MOST_SECONDS: f64 = 0.1;
 
 /// Command buffers that the host waits for at once.
@@ -67,7 +68,8 @@ impl DeviceEngine {
         Ok(Self::of(opened, time_limit))
     }
 
-    /// Another engine on the same device, with buffers of its own. Both have one queue, and stages are compiled once.
+    /// Another engine on the same device, with buffers of its own. Both have one queue, and stages are
+    /// compiled once.
     pub fn beside(&self) -> Self {
         Self::of(Arc::clone(&self.opened), self.time_limit)
     }
@@ -92,13 +94,14 @@ impl DeviceEngine {
         }
     }
 
-    /// Measures the stages from now on. Each dispatch then waits for the one before it, and the host for all of them.
+    /// Measures the stages from now on. Each dispatch then waits for the one before it, and the host for all
+    /// of them.
     pub fn measure(&mut self, profile: Profile) {
         self.profile = Some(profile);
     }
 
-    /// Sets how long the host waits for an answer of the device before it gives it up, with [`GpuError::Lost`]; None: for
-    /// ever, as with a software driver.
+    /// Sets how long the host waits for an answer of the device before it gives it up, with
+    /// [`GpuError::Lost`]; None: for ever, as with a software driver.
     pub fn set_time_limit(&mut self, limit: Option<Duration>) {
         self.time_limit = limit;
     }
@@ -113,7 +116,8 @@ impl DeviceEngine {
         &self.opened.name
     }
 
-    /// Refuses buffers of more than this many bytes, as a device of lower limits does: for tests of what happens then.
+    /// Refuses buffers of more than this many bytes, as a device of lower limits does: for tests of what
+    /// happens then.
     pub fn limit_buffers(&mut self, bytes: u64) {
         self.largest_buffer = self.largest_buffer.min(bytes);
     }
@@ -359,7 +363,8 @@ impl Engine for DeviceEngine {
 }
 
 impl DeviceEngine {
-    /// Submits a recording whose stages are compiled, with copies of what is read. Returns the number of bytes to read.
+    /// Submits a recording whose stages are compiled, with copies of what is read. Returns the number of
+    /// bytes to read.
     fn submit(
         &mut self,
         recording: &Recording,
@@ -464,8 +469,8 @@ impl DeviceEngine {
     }
 }
 
-/// Most dispatches of a command buffer, where so many took `seconds` and a command buffer may take `most` [s]; None where
-/// there were none.
+/// Most dispatches of a command buffer, where so many took `seconds` and a command buffer may take `most`
+/// [s]; None where there were none.
 fn dispatches_within(most: f64, seconds: f64, dispatches: usize) -> Option<usize> {
     let fit = most * dispatches as f64 / seconds;
     (dispatches > 0).then(|| (fit as usize).clamp(1, MOST_DISPATCHES))

@@ -20,7 +20,8 @@ pub(super) struct Opened {
     stages: Mutex<HashMap<&'static str, Arc<Compiled>>>,
     /// Dispatches that were submitted since the host waited last.
     pub unread_dispatches: AtomicUsize,
-    /// What the driver reported since the last look: it does so from other threads. That the device is lost stays.
+    /// What the driver reported since the last look: it does so from other threads. That the device is lost
+    /// stays.
     failure: Arc<Mutex<Option<Failure>>>,
 }
 

@@ -23,8 +23,8 @@ impl PhaseSeconds {
     }
 }
 
-/// Puts time stamps around the passes of a recording, one pass per phase, and adds up what lies between them. They are read
-/// with the results of the recording, so that the host does not wait for them.
+/// Puts time stamps around the passes of a recording, one pass per phase, and adds up what lies between them.
+/// They are read with the results of the recording, so that the host does not wait for them.
 #[derive(Debug)]
 pub(super) struct PhaseClock {
     queries: wgpu::QuerySet,

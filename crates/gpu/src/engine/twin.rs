@@ -28,8 +28,8 @@ impl TwinEngine {
         self.largest_buffer = Some(self.largest_buffer.map_or(bytes, |most| most.min(bytes)));
     }
 
-    /// Words of a buffer up to the last one that is neither zero nor [`NONE`]: what is in use of it, for counts of what
-    /// stages move.
+    /// Words of a buffer up to the last one that is neither zero nor [`NONE`]: what is in use of it, for
+    /// counts of what stages move.
     pub fn words_in_use(&self, buffer: BufferId) -> usize {
         let is_used = |word: &u32| ![0, NONE].contains(word);
         self.content(buffer).iter().rposition(is_used).map_or(0, |last| last + 1)

@@ -77,8 +77,8 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         Ok(Some(buffers))
     }
 
-    /// Makes room for springs and records what adds them to the matrix and makes the preconditioner, with nodes at
-    /// `positions` on a grid. Nothing that is recorded before may bind buffers of the system.
+    /// Makes room for springs and records what adds them to the matrix and makes the preconditioner, with
+    /// nodes at `positions` on a grid. Nothing that is recorded before may bind buffers of the system.
     pub(crate) fn record_preconditioner(
         &mut self,
         springs: &AssemblySprings<'_>,
@@ -118,7 +118,8 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         Ok(())
     }
 
-    /// H x with the matrix that was prepared last, springs included; only rows of free nodes count. For tests: solves do without.
+    /// H x with the matrix that was prepared last, springs included; only rows of free nodes count. For
+    /// tests: solves do without.
     ///
     /// # Errors
     /// The device failed.

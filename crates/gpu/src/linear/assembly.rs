@@ -12,7 +12,8 @@ use bowknot_dynamics::ElementModel;
 pub struct Assembly {
     pub buffers: AssemblyBuffers,
     pub model: ElementModel,
-    /// The free nodes, and those before them: solves for what is inside of solids take turns with those of the whole.
+    /// The free nodes, and those before them: solves for what is inside of solids take turns with those of
+    /// the whole.
     pub set: Option<FreeSet>,
     pub previous: Option<FreeSet>,
     /// The buffer to which the slots of the patches of `set` were written.

@@ -1,5 +1,5 @@
-//! The data of a linear solve that host, kernels and twins share. A test compares every struct with what the shaders
-//! declare (`stages/tests.rs`).
+//! The data of a linear solve that host, kernels and twins share. A test compares every struct with what the
+//! shaders declare (`stages/tests.rs`).
 
 use crate::kernels;
 use bytemuck::{Pod, Zeroable};
@@ -7,7 +7,8 @@ use bytemuck::{Pod, Zeroable};
 /// Threads of a workgroup that adds up sums.
 pub const THREADS: usize = kernels::cg_step::THREADS as usize;
 
-/// Most workgroups that write partial sums: the workgroups of the next stage each add them all, one per thread.
+/// Most workgroups that write partial sums: the workgroups of the next stage each add them all, one per
+/// thread.
 pub const MOST_WORKGROUPS: usize = THREADS;
 
 /// Slots of a patch, each for a node: eight groups of eight slots.
@@ -35,8 +36,8 @@ pub struct PatchSlot {
     pub factors: [f32; 6],
     /// From the center of the group to the node, over the size of the group.
     pub arm: [f32; 3],
-    /// Half of the link of the group to the patch, of the first two slots of a group: the way from the center of the patch to
-    /// that of the group, over the size of the patch, and the ratio of the sizes.
+    /// Half of the link of the group to the patch, of the first two slots of a group: the way from the center
+    /// of the patch to that of the group, over the size of the patch, and the ratio of the sizes.
     pub link: [f32; 2],
 }
 

@@ -1,13 +1,15 @@
 //! The matrix of a linear solve as it lies on the device.
 //!
-//! Rows multiply as `(H p)_i = S_i p_i + sum_j H_ij (p_j - p_i)` with the row sums S, plus the reactions of springs. Rounding
-//! of H_ij to single precision then acts on deformations alone and not on bodies that move as a whole.
+//! Rows multiply as `(H p)_i = S_i p_i + sum_j H_ij (p_j - p_i)` with the row sums S, plus the reactions of
+//! springs. Rounding of H_ij to single precision then acts on deformations alone and not on bodies that move
+//! as a whole.
 //!
-//! Blocks and scalar entries are stored in slices of 32 rows (sliced ELLPACK; A. Monakov, A. Lokhmotov and A. Avetisyan,
-//! "Automatically Tuning Sparse Matrix-Vector Multiplication for GPU Architectures", HiPEAC 2010): word w of block k of row r
-//! stands at `start + (10 k + w) 32 + r % 32`, so that neighboring threads read neighboring words. A block is its column and
-//! nine numbers by columns; the first block of a row is its sum. Scalar entries follow, each its column and its number. Rows
-//! that are shorter than the longest of their slice end with zeros.
+//! Blocks and scalar entries are stored in slices of 32 rows (sliced ELLPACK; A. Monakov, A. Lokhmotov and A.
+//! Avetisyan, "Automatically Tuning Sparse Matrix-Vector Multiplication for GPU Architectures", HiPEAC 2010):
+//! word w of block k of row r stands at `start + (10 k + w) 32 + r % 32`, so that neighboring threads read
+//! neighboring words. A block is its column and nine numbers by columns; the first block of a row is its sum.
+//! Scalar entries follow, each its column and its number. Rows that are shorter than the longest of their
+//! slice end with zeros.
 
 use super::layout::Spring;
 use bowknot_dynamics::LinearSpring;
@@ -34,13 +36,13 @@ impl<'a> Columns<'a> {
 /// The matrix, packed.
 #[derive(Debug, Default)]
 pub struct PackedMatrix {
-    /// Of each slice: where its words begin, blocks per row, scalar entries per row, and a bit for each row that is the
-    /// sum of a row plus the product of strands, with blocks for the preconditioner alone.
+    /// Of each slice: where its words begin, blocks per row, scalar entries per row, and a bit for each row
+    /// that is the sum of a row plus the product of strands, with blocks for the preconditioner alone.
     pub slices: Vec<[u32; 4]>,
     pub words: Vec<u32>,
     pub springs: Vec<Spring>,
-    /// Where the entries of each node begin and end, then of each entry the spring and the weight; empty if there are no
-    /// springs.
+    /// Where the entries of each node begin and end, then of each entry the spring and the weight; empty if
+    /// there are no springs.
     pub spring_words: Vec<u32>,
 }
 

@@ -1,7 +1,8 @@
 //! Patches of nodes and the hierarchy of groups above them, for the preconditioner.
 //!
-//! A patch has up to 64 nodes in up to eight groups of up to eight nodes. Groups move as rigid bodies; so do patches, eight
-//! successive patches, eight times as many, and so on. Nodes alone in their patch, such as grains, get block-Jacobi only.
+//! A patch has up to 64 nodes in up to eight groups of up to eight nodes. Groups move as rigid bodies; so do
+//! patches, eight successive patches, eight times as many, and so on. Nodes alone in their patch, such as
+//! grains, get block-Jacobi only.
 
 use super::layout::{CHILDREN, PATCH_SLOTS};
 use bowknot_geometry::Vector;
@@ -14,8 +15,8 @@ pub struct Patches {
     pub slots: Vec<Option<u32>>,
     /// Number of patches with groups.
     pub grouped: usize,
-    /// Number of groups of each coarse level: the patches with groups, the groups of eight of them, and so on until at most
-    /// eight are left. Empty if there is at most one patch with groups.
+    /// Number of groups of each coarse level: the patches with groups, the groups of eight of them, and so on
+    /// until at most eight are left. Empty if there is at most one patch with groups.
     pub levels: Vec<usize>,
 }
 
@@ -61,8 +62,8 @@ impl Patches {
     }
 }
 
-/// Halves `nodes` across the longest side of their box until at most `most` are left, and visits the parts. Halves of at
-/// most 64 nodes have at most eight parts of at most eight.
+/// Halves `nodes` across the longest side of their box until at most `most` are left, and visits the parts.
+/// Halves of at most 64 nodes have at most eight parts of at most eight.
 fn bisect(nodes: &mut [u32], positions: &[Vector], most: usize, visit: &mut dyn FnMut(&mut [u32])) {
     if nodes.is_empty() {
         return;

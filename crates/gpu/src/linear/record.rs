@@ -29,8 +29,8 @@ pub struct StrandHessian {
 }
 
 impl Recorder {
-    /// Starts from x = 0 with the residual that lies where the search direction goes, as step `k` in the order of all
-    /// steps: its partial sums are in [`Self::norms`] of `k`.
+    /// Starts from x = 0 with the residual that lies where the search direction goes, as step `k` in the
+    /// order of all steps: its partial sums are in [`Self::norms`] of `k`.
     pub fn record_residual(&self, k: usize, recording: &mut Recording) {
         self.record_step(true, 1 - k % 2, recording);
     }
@@ -71,8 +71,8 @@ impl Recorder {
         );
     }
 
-    /// Where the partial sums of squared norms are that the last of `iterations` since the start wrote, in words, and
-    /// their number.
+    /// Where the partial sums of squared norms are that the last of `iterations` since the start wrote, in
+    /// words, and their number.
     pub fn norms(&self, iterations: usize) -> std::ops::Range<usize> {
         let first = self.norms_at(iterations % 2);
         first..first + self.norm_count()
@@ -88,7 +88,8 @@ impl Recorder {
             + self.sizes.levels.chunks(LEVELS_PER_DISPATCH).map(coarse_workgroups).sum::<usize>()
     }
 
-    /// The step, the preconditioner and the next direction. The present partial sums are those in half `present`.
+    /// The step, the preconditioner and the next direction. The present partial sums are those in half
+    /// `present`.
     fn record_step(&self, is_start: bool, present: usize, recording: &mut Recording) {
         let (b, s) = (&self.buffers, &self.sizes);
         let start = u32::from(is_start);

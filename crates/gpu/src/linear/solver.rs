@@ -6,8 +6,8 @@ use super::record::Recorder;
 use crate::engine::Engine;
 use crate::newton::Newton;
 
-/// Newton's method of the dynamics on an engine: linear systems are assembled and solved there, with block-Jacobi, or with
-/// rigid motions on several levels of groups of nodes (`docs/gpu/dynamics.md`).
+/// Newton's method of the dynamics on an engine: linear systems are assembled and solved there, with
+/// block-Jacobi, or with rigid motions on several levels of groups of nodes (`docs/gpu/dynamics.md`).
 #[derive(Debug)]
 pub struct ConjugateGradients<E> {
     pub(crate) name: String,

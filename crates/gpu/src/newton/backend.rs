@@ -75,7 +75,8 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
     fn linearize_newton(&mut self, absolute: bool) -> Result<(), GpuError> {
         let Some(buffers) = self.make_room()? else { return Ok(()) };
         let (Some(newton), Some(assembly)) = (&mut self.newton, &mut self.assembly) else { return Ok(()) };
-        // Buffers of the matrix have the same sizes from now on, so the next call that makes room frees none of them.
+        // Buffers of the matrix have the same sizes from now on, so the next call that makes room frees none
+        // of them.
         let mut recording = take(&mut newton.pending);
         let (v, quantum) = (&newton.vectors, newton.grid.quantum);
         let wanted = Some((newton.iterate, absolute));

@@ -13,7 +13,8 @@ use bowknot_geometry::Vector;
 use std::fmt::Debug;
 
 impl Newton {
-    /// Records R (d + p) by block, with the displacement d since the start of the time step. Returns what is to be read.
+    /// Records R (d + p) by block, with the displacement d since the start of the time step. Returns what is
+    /// to be read.
     pub fn record_momenta(&self, row_sums: BufferId, recording: &mut Recording) -> (BufferId, usize) {
         let v = &self.vectors;
         recording.dispatch(
@@ -25,8 +26,8 @@ impl Newton {
         (v.totals, 4 * self.blocks.count())
     }
 
-    /// Sets `sums` to the forces on components that are not inner forces: those of springs, less c and R (d + p). That
-    /// is the sum of b - R p without elements and K, where all nodes are free.
+    /// Sets `sums` to the forces on components that are not inner forces: those of springs, less c and R (d +
+    /// p). That is the sum of b - R p without elements and K, where all nodes are free.
     pub fn component_residuals<E: Engine>(
         &mut self,
         engine: &mut E,

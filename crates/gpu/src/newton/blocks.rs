@@ -1,5 +1,5 @@
-//! Blocks of nodes: those of one component within a window of 256. The device sums over blocks, the host over the
-//! blocks of each component.
+//! Blocks of nodes: those of one component within a window of 256. The device sums over blocks, the host over
+//! the blocks of each component.
 
 use super::layout::WINDOW;
 use bowknot_dynamics::LinearSpring;

@@ -1,5 +1,5 @@
-//! The data of Newton's method that host, kernels and twins share. A test compares it with what the shaders declare
-//! (`stages/tests.rs`).
+//! The data of Newton's method that host, kernels and twins share. A test compares it with what the shaders
+//! declare (`stages/tests.rs`).
 
 use crate::kernels;
 use crate::linear::MOST_WORKGROUPS;
@@ -12,8 +12,8 @@ pub const WINDOW: usize = kernels::block_momenta::WINDOW as usize;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Solve {
-    /// A power of two that makes the largest force nearly 1, so that squares of forces of any unit are numbers of single
-    /// precision, and its inverse.
+    /// A power of two that makes the largest force nearly 1, so that squares of forces of any unit are
+    /// numbers of single precision, and its inverse.
     pub factor: f32,
     pub inverse: f32,
     /// Of the right-hand side.
@@ -60,6 +60,6 @@ pub const SUMS: usize = 8;
 /// Where the sums of guesses begin, after a number per workgroup.
 pub const FIRST_SUM: usize = MOST_WORKGROUPS;
 
-/// What `reduce_trial` writes: p . b, then what is largest of the components of p, of the squared distances from the
-/// iterate and from the start of the target, and of the coordinates.
+/// What `reduce_trial` writes: p . b, then what is largest of the components of p, of the squared distances
+/// from the iterate and from the start of the target, and of the coordinates.
 pub const SUMMARY: usize = 5;

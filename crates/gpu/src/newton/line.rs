@@ -14,8 +14,9 @@ use std::mem::take;
 /// Largest coordinate of the grid, as a number: see `trial_positions.wgsl`.
 const REACH: f64 = ((1u32 << 29) - 1) as f64;
 
-/// Bits by which the grid may get coarser for a trial. A trial that would need more is 16 times as far as the state is
-/// large: it ends at the border of the grid, where the line search refuses it, and shorter ones keep their digits.
+/// Bits by which the grid may get coarser for a trial. A trial that would need more is 16 times as far as the
+/// state is large: it ends at the border of the grid, where the line search refuses it, and shorter ones keep
+/// their digits.
 const MOST_BITS: u32 = 4;
 
 /// Most nodes whose trials are read as a whole each time: a target then takes no wait of its own.
@@ -61,8 +62,8 @@ impl Newton {
         })
     }
 
-    /// Makes the reference, and the trial at full length with its energies, in one submission if the solve has not made them.
-    /// Returns the watched nodes at the reference too.
+    /// Makes the reference, and the trial at full length with its energies, in one submission if the solve
+    /// has not made them. Returns the watched nodes at the reference too.
     pub fn begin_search<E: Engine>(&mut self, engine: &mut E) -> Result<(Watched, Trial), GpuError> {
         if self.is_solved {
             let found = match self.searched.take() {
@@ -82,8 +83,8 @@ impl Newton {
         Ok((reference.watched, self.make_trial(engine, 1.0)?))
     }
 
-    /// Records a trial with its energies. Returns what to read: a [`Summary`], energies, watched nodes, and of a small model
-    /// the trial.
+    /// Records a trial with its energies. Returns what to read: a [`Summary`], energies, watched nodes, and
+    /// of a small model the trial.
     fn record_trial(&self, length: f64, recording: &mut Recording) -> Vec<(BufferId, usize)> {
         let v = &self.vectors;
         self.record_trial_positions(length, v.trial, recording);
@@ -147,8 +148,8 @@ impl Newton {
     }
 }
 
-/// What `reduce_trial` finds: p . b, and what is largest of the components of p [m], of the squared distances from the iterate and
-/// from the start of the target [quanta^2], and of the coordinates.
+/// What `reduce_trial` finds: p . b, and what is largest of the components of p [m], of the squared distances
+/// from the iterate and from the start of the target [quanta^2], and of the coordinates.
 struct Summary {
     product: f64,
     largest: f64,

@@ -1,9 +1,9 @@
-//! Newton's method of the dynamics with its vectors on a device: [`NewtonBackend`](bowknot_dynamics::NewtonBackend) for
-//! [`ConjugateGradients`](crate::ConjugateGradients).
+//! Newton's method of the dynamics with its vectors on a device:
+//! [`NewtonBackend`](bowknot_dynamics::NewtonBackend) for [`ConjugateGradients`](crate::ConjugateGradients).
 //!
-//! Positions are integers on a grid that is chosen once per time step; vectors are in single precision. Sums over all
-//! nodes are made in a fixed order: by workgroup, then over workgroups by one of them, or by block of nodes, then over
-//! blocks by the host in double precision.
+//! Positions are integers on a grid that is chosen once per time step; vectors are in single precision. Sums
+//! over all nodes are made in a fixed order: by workgroup, then over workgroups by one of them, or by block
+//! of nodes, then over blocks by the host in double precision.
 //!
 //! | module | holds |
 //! |---|---|

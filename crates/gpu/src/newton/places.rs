@@ -14,12 +14,13 @@ use bowknot_dynamics::{ElementModel, NewtonStep, NewtonTarget, Watched};
 use bowknot_geometry::Vector;
 use std::collections::HashMap;
 
-/// Side of the smallest box that a grid reaches over, as a share of the size of the model at rest, and that of a model
-/// without a size [m].
+/// Side of the smallest box that a grid reaches over, as a share of the size of the model at rest, and that
+/// of a model without a size [m].
 const MIN_SIDE: f64 = 0.25;
 const SIDE_OF_A_POINT: f64 = 1e-3;
 
-/// Solves of a target that have places of their own; in the same ones of the next targets there are about as many iterations.
+/// Solves of a target that have places of their own; in the same ones of the next targets there are about as
+/// many iterations.
 const MOST_SOLVES: usize = 16;
 
 /// Most bits by which a stage coarsens a grid.
@@ -38,7 +39,8 @@ pub struct Newton {
     side: f64,
     /// 1 / dt [1/s].
     pub rate: f64,
-    /// Sums of [`NewtonStep::gradient`] over components, and those of the forces of springs in the last solve [N].
+    /// Sums of [`NewtonStep::gradient`] over components, and those of the forces of springs in the last solve
+    /// [N].
     pub gradient_sums: Vec<Vector>,
     pub spring_sums: Vec<Vector>,
     /// What the last solve has read of R (d + p) by block, until something of it changes.
@@ -223,7 +225,8 @@ impl Newton {
         }
     }
 
-    /// Records the trial at the iterate, with nodes that are not free at their ends. Returns the watched positions.
+    /// Records the trial at the iterate, with nodes that are not free at their ends. Returns the watched
+    /// positions.
     fn record_beginning(&mut self, recording: &mut Recording) -> Watched {
         self.imposes = self.start_imposes;
         self.is_solved = false;
@@ -258,7 +261,8 @@ impl Newton {
         );
     }
 
-    /// Records that entries of the watched nodes go where they are read; returns from where, and how many words.
+    /// Records that entries of the watched nodes go where they are read; returns from where, and how many
+    /// words.
     pub fn record_watched(
         &self,
         from: BufferId,
@@ -276,7 +280,8 @@ impl Newton {
         (seen, width * nodes)
     }
 
-    /// Records that all positions go to a grid that is coarser by so many bits: they change by half a quantum at most.
+    /// Records that all positions go to a grid that is coarser by so many bits: they change by half a quantum
+    /// at most.
     pub fn coarsen(&mut self, bits: u32, recording: &mut Recording) {
         let mut left = bits;
         while left > 0 {
@@ -311,7 +316,8 @@ impl Newton {
     }
 }
 
-/// Bits by which a grid must get coarser so that coordinates of that share of its reach, a finite one, are on it.
+/// Bits by which a grid must get coarser so that coordinates of that share of its reach, a finite one, are on
+/// it.
 pub fn bits(reach: f64) -> u32 {
     let (mut bits, mut left) = (0, if reach.is_finite() { reach } else { 0.0 });
     while left > 1.0 {

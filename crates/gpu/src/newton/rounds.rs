@@ -1,7 +1,7 @@
 //! When linear solves end: iterative refinement, as on the CPU (`linear/solver.rs` of the dynamics).
 //!
-//! A round are iterations of conjugate gradients. After it the residual b - H p is computed; while it is above the
-//! tolerance, a further round corrects p from there.
+//! A round are iterations of conjugate gradients. After it the residual b - H p is computed; while it is
+//! above the tolerance, a further round corrects p from there.
 
 use super::layout::Solve;
 use super::places::Newton;
@@ -19,8 +19,8 @@ use std::mem::take;
 /// Share of the residual that a round must take away at least.
 const MIN_GAIN: f64 = 0.5;
 
-/// A residual up to so many times the tolerance is taken where rounding allows no smaller one: to begin again on the CPU would
-/// cost more than it gains.
+/// A residual up to so many times the tolerance is taken where rounding allows no smaller one: to begin again
+/// on the CPU would cost more than it gains.
 const MAX_EXCESS: f64 = 2.0;
 
 /// The solve without a model.
@@ -35,13 +35,14 @@ pub(super) const FIRST_BATCH: usize = 12;
 const MIN_BATCH: usize = 4;
 const MAX_BATCH: usize = 128;
 
-/// The first batch of a solve has the most iterations that the last two solves at its place took, the next ones so many times
-/// those that are likely to be left; both have so many more. One too few costs a wait, one too many a few dispatches that do
-/// nothing.
+/// The first batch of a solve has the most iterations that the last two solves at its place took, the next
+/// ones so many times those that are likely to be left; both have so many more. One too few costs a wait, one
+/// too many a few dispatches that do nothing.
 const CAUTION: f64 = 1.25;
 const SPARE: usize = 2;
 
-/// Most blocks whose momenta are read with each batch of iterations; those of more are read once, after the solve.
+/// Most blocks whose momenta are read with each batch of iterations; those of more are read once, after the
+/// solve.
 const MOST_BLOCKS: usize = 128;
 
 /// A solve that goes on.
@@ -65,8 +66,8 @@ struct Rounds<'a, E> {
     batch: usize,
 }
 
-/// Iterations that are likely to be left in a round of which so many are made, from the squared norms at its start and
-/// `now`, and the `goal`. None where nothing has decreased.
+/// Iterations that are likely to be left in a round of which so many are made, from the squared norms at its
+/// start and `now`, and the `goal`. None where nothing has decreased.
 fn iterations_left(made: usize, [start, now, goal]: [f64; 3]) -> Option<f64> {
     let decrease = (start / now).ln() / made as f64;
     let left = (now / goal).ln() / decrease;

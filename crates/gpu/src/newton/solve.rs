@@ -1,7 +1,7 @@
 //! What a linear solve records.
 //!
-//! Positions, steps and forces are in SI units; conjugate gradients work on forces times [`Solve::factor`], and on
-//! displacements times the same.
+//! Positions, steps and forces are in SI units; conjugate gradients work on forces times [`Solve::factor`],
+//! and on displacements times the same.
 
 use super::layout::{FIRST_SUM, Solve};
 use super::places::Newton;
@@ -153,8 +153,8 @@ impl Newton {
         );
     }
 
-    /// Records the end of a round, after step `k` of the solve, which does nothing if the round goes on: the solution is
-    /// added to the step, and conjugate gradients start from its residual.
+    /// Records the end of a round, after step `k` of the solve, which does nothing if the round goes on: the
+    /// solution is added to the step, and conjugate gradients start from its residual.
     pub fn record_end(
         &self,
         recorder: &Recorder,

@@ -32,8 +32,8 @@ fn largest(a: &DVector<f64>) -> f64 {
 
 /// All calls once, as a Newton iteration makes them. Returns the end and what was told on the way.
 ///
-/// The second target begins where the first has ended, or `returns`: near equilibrium forces are differences of large
-/// ones, so that kernels and twins agree by less.
+/// The second target begins where the first has ended, or `returns`: near equilibrium forces are differences
+/// of large ones, so that kernels and twins agree by less.
 fn run<E: Engine + Debug + Send>(
     fixture: &Fixture,
     solver: &mut ConjugateGradients<E>,
@@ -209,7 +209,8 @@ fn an_iteration_moves_no_vector() {
     (engine.runs, engine.waits, engine.dispatches, engine.written, engine.read) = (0, 0, 0, 0, 0);
     let iterations = iterate(&mut solver);
     let engine = solver.engine();
-    // That the last one was enough is found by the next one. The second batch is as long as the first one lets expect.
+    // That the last one was enough is found by the next one. The second batch is as long as the first one
+    // lets expect.
     let batches = 1 + usize::from(iterations >= FIRST_BATCH);
     println!(
         "{} nodes, {iterations} linear iterations: {} submissions, {} waits, {} dispatches, {} bytes written, {} bytes read",

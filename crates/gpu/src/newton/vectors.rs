@@ -10,8 +10,9 @@ use crate::recording::BufferId;
 /// The buffers. Positions are four integers per node, the fourth of them 0; other vectors are four numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Vectors {
-    /// Positions: at the start of the time step, where inertia leads, the iterate, the iterate that the target began
-    /// with, the trial and the one that is kept, what changes of energy count from, the last target.
+    /// Positions: at the start of the time step, where inertia leads, the iterate, the iterate that the
+    /// target began with, the trial and the one that is kept, what changes of energy count from, the last
+    /// target.
     pub start: BufferId,
     pub inertial: BufferId,
     pub iterate: BufferId,

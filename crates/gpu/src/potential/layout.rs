@@ -1,5 +1,5 @@
-//! The data of the potential that host, kernels and twins share. A test compares every struct with what the shaders declare
-//! (`stages/tests.rs`). Units are SI; positions are integers, multiples of a quantum.
+//! The data of the potential that host, kernels and twins share. A test compares every struct with what the
+//! shaders declare (`stages/tests.rs`). Units are SI; positions are integers, multiples of a quantum.
 
 use crate::kernels;
 use bytemuck::{Pod, Zeroable};

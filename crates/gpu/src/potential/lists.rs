@@ -4,7 +4,8 @@ use super::layout::Pair;
 use crate::layout::NONE;
 use bowknot_dynamics::ElementModel;
 
-/// Nodes of an element of each kind, in the order in which their gradients lie: membranes, bends, tetrahedra, strands.
+/// Nodes of an element of each kind, in the order in which their gradients lie: membranes, bends, tetrahedra,
+/// strands.
 pub const NODES: [usize; 4] = [3, 6, 4, 3];
 
 /// The lists of a model.
@@ -42,8 +43,8 @@ impl Lists {
     }
 }
 
-/// The rows of K: of each node its first entry and their end, and the entries. Entries of the pattern that are zero are
-/// left out: bending joins few of the pairs that elements join.
+/// The rows of K: of each node its first entry and their end, and the entries. Entries of the pattern that
+/// are zero are left out: bending joins few of the pairs that elements join.
 pub fn rows(model: &ElementModel, bending: &[f64], scalars: &[f64]) -> (Vec<[u32; 2]>, Vec<Pair>) {
     let mut pairs = Vec::new();
     let ranges = (0..model.rest.len()).map(|i| {

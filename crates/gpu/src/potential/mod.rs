@@ -1,14 +1,16 @@
 //! The potential of the bodies on a device: its gradient, and its change from one state to another.
 //!
-//! With d = x - x0 from the start of the time step it is, as `NewtonBackend` of the crate bowknot-dynamics has it,
+//! With d = x - x0 from the start of the time step it is, as `NewtonBackend` of the crate bowknot-dynamics
+//! has it,
 //!
 //! ```text
 //! P(x) = 1/2 d.(R + K) d + c.d + sum of elements e(x; x0)
 //! ```
 //!
-//! Positions are integers, multiples of a quantum. Differences of positions, and of such differences, are formed before they
-//! become single numbers: K and the elements do not feel a motion of the whole, and a change from x to x + u, computed from
-//! u and the changes of strain that it makes, has no difference of two energies in it.
+//! Positions are integers, multiples of a quantum. Differences of positions, and of such differences, are
+//! formed before they become single numbers: K and the elements do not feel a motion of the whole, and a
+//! change from x to x + u, computed from u and the changes of strain that it makes, has no difference of two
+//! energies in it.
 //!
 //! | module | holds |
 //! |---|---|

@@ -11,12 +11,12 @@ use crate::recording::{BufferId, Recording};
 use crate::stages::Stage;
 use bowknot_dynamics::{ElementModel, NewtonStep};
 
-/// The error of a change is at most so many units of 2^-24, the rounding of a number, of the sum of the sizes of what it
-/// is made of. The kernels take these sizes before anything cancels: the stress of a strain counts with all of the
-/// deformation, and not with the strain alone. Of single elements and nodes in random states the error is at most half of
-/// this (a test measures it). Errors of many elements have either sign: they add up like the root of the sum of squares. The
-/// additions of up to 16 terms by a thread, and those of twelve levels of sums, have errors of some units of what the sums
-/// come to.
+/// The error of a change is at most so many units of 2^-24, the rounding of a number, of the sum of the sizes
+/// of what it is made of. The kernels take these sizes before anything cancels: the stress of a strain counts
+/// with all of the deformation, and not with the strain alone. Of single elements and nodes in random states
+/// the error is at most half of this (a test measures it). Errors of many elements have either sign: they add
+/// up like the root of the sum of squares. The additions of up to 16 terms by a thread, and those of twelve
+/// levels of sums, have errors of some units of what the sums come to.
 pub const ROUNDING_UNITS: f64 = 8.0;
 
 /// Where the nodes are.
@@ -231,7 +231,8 @@ impl Potential {
         recording.dispatch(&kernels::SUM_ENERGY, &[self.parts, self.sums], params, THREADS * self.sum_count);
     }
 
-    /// What [`Self::energies`] needs after [`Self::record_energies`]: the first words of a buffer, at most 256.
+    /// What [`Self::energies`] needs after [`Self::record_energies`]: the first words of a buffer, at most
+    /// 256.
     pub fn energy_words(&self) -> (BufferId, usize) {
         (self.sums, 4 * self.sum_count)
     }

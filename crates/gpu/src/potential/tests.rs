@@ -109,8 +109,8 @@ fn quadratic_sizes(problem: &Problem, at: &State) -> Vec<f64> {
         .collect()
 }
 
-/// A number of the gradient passes through some twenty operations, from the deformation on, which amplify rounding by up to
-/// the stiffness times the lengths of the elements around the node.
+/// A number of the gradient passes through some twenty operations, from the deformation on, which amplify
+/// rounding by up to the stiffness times the lengths of the elements around the node.
 #[test]
 fn gradients_are_those_of_double_precision() {
     for case in cases() {

@@ -20,11 +20,11 @@ const MIN_VERTICES: usize = 4096;
 /// Share of the largest friction from which on a contact slides: single precision.
 const SLIDES: f64 = 1.0 - 1e-5;
 
-/// Moves `positions` from an intersection-free state toward `target` on an engine, as [`Resolver::resolve_with`] does on
-/// the CPU. The state of the resolver becomes that of the call.
+/// Moves `positions` from an intersection-free state toward `target` on an engine, as
+/// [`Resolver::resolve_with`] does on the CPU. The state of the resolver becomes that of the call.
 ///
-/// Statistics that the device does not compute are 0: colors, complementarity, and the seconds by stage if it has no time
-/// stamps.
+/// Statistics that the device does not compute are 0: colors, complementarity, and the seconds by stage if it
+/// has no time stamps.
 ///
 /// # Errors
 /// [`GpuResolveError`]; `positions` are then unchanged.
@@ -53,7 +53,8 @@ pub struct Device<E> {
     engine: Option<E>,
     prepared: Option<Prepared<E>>,
     judge: SceneJudge,
-    /// Positions that the scene begins with [m]: the grid is made from them, so that a run that is resumed has the same.
+    /// Positions that the scene begins with [m]: the grid is made from them, so that a run that is resumed
+    /// has the same.
     home: Vec<Point>,
     /// Positions by which the trees are ordered [m].
     order: Vec<Point>,
@@ -121,8 +122,8 @@ impl<E: Engine + Debug + Send> Device<E> {
         }
     }
 
-    /// Submits at most `most` two-way steps together, 8 if this is not called. States are the same bits for any number.
-    /// With an observer that sees each state it is 1.
+    /// Submits at most `most` two-way steps together, 8 if this is not called. States are the same bits for
+    /// any number. With an observer that sees each state it is 1.
     pub fn set_steps_per_submission(&mut self, most: usize) {
         self.steps_per_submission = most.max(1);
     }
@@ -311,8 +312,8 @@ impl<E: Engine + Debug + Send> Device<E> {
         self.prepared.as_ref().map_or(0.0, |prepared| prepared.collision.grid().quantum())
     }
 
-    /// As [`Resolver::resolve_with`], whose state becomes that of the call. Nobody may rely on the positions before they have
-    /// been [judged](Self::judge).
+    /// As [`Resolver::resolve_with`], whose state becomes that of the call. Nobody may rely on the positions
+    /// before they have been [judged](Self::judge).
     ///
     /// # Errors
     /// [`GpuResolveError`]; `positions` are then unchanged.
@@ -351,8 +352,8 @@ fn farthest_ends(scene: &CollisionScene, positions: &[Point], target: &[Point], 
     positions.par_iter().zip(target).enumerate().with_min_len(MIN_VERTICES).map(end).collect()
 }
 
-/// Puts the vertices on the grid and returns where they are [m]. Nothing may pass through on the way there: each vertex
-/// moves by less than 0.87 quanta, so that gaps of two quanta stay open.
+/// Puts the vertices on the grid and returns where they are [m]. Nothing may pass through on the way there:
+/// each vertex moves by less than 0.87 quanta, so that gaps of two quanta stay open.
 fn place<E: Engine>(
     collision: &mut Collision<E>,
     scene: &CollisionScene,

@@ -1,16 +1,18 @@
 //! Free flight: bodies that nothing is near move as a whole, before the device makes steps.
 //!
-//! *Within a body* a translation by multiples of the quantum of the grid is exact, so no distance changes. Bodies that
-//! would come near each other form a group and are translated alike; with those that are prescribed in any part, and above
-//! half-spaces that they would come near, they stay.
+//! *Within a body* a translation by multiples of the quantum of the grid is exact, so no distance changes.
+//! Bodies that would come near each other form a group and are translated alike; with those that are
+//! prescribed in any part, and above half-spaces that they would come near, they stay.
 //!
-//! *Between groups* the boxes decide. All move at the same path time, each along a straight line, so that the gap of two
-//! boxes along an axis is linear in the path time and smallest at an end. Groups whose boxes are farther apart than their
-//! contact ranges along one axis at both ends are so in between, and no pair of them needs to be looked at. Contact
-//! ranges are hundreds of quanta at least, far above what rounding to the grid can change.
+//! *Between groups* the boxes decide. All move at the same path time, each along a straight line, so that the
+//! gap of two boxes along an axis is linear in the path time and smallest at an end. Groups whose boxes are
+//! farther apart than their contact ranges along one axis at both ends are so in between, and no pair of them
+//! needs to be looked at. Contact ranges are hundreds of quanta at least, far above what rounding to the grid
+//! can change.
 //!
-//! A flight that ended where bodies come near each other would be longer, but its end is out of contact range: the next
-//! step could then be the last, and take bodies closer than they should be, without a contact row.
+//! A flight that ended where bodies come near each other would be longer, but its end is out of contact
+//! range: the next step could then be the last, and take bodies closer than they should be, without a contact
+//! row.
 
 use bowknot_geometry::{Aabb, HalfSpace, Point, Vector};
 use bowknot_twoway::{CallInput, CollisionScene};
@@ -20,8 +22,9 @@ use std::ops::Range;
 /// Vertices that one task looks at.
 const CHUNK: usize = 4096;
 
-/// Where the vertices are after a flight from `start` [m], on a grid with a quantum [m] on which `start` lies. None if it
-/// would not save steps, of which each moves a vertex by `longest` local edge lengths at most.
+/// Where the vertices are after a flight from `start` [m], on a grid with a quantum [m] on which `start`
+/// lies. None if it would not save steps, of which each moves a vertex by `longest` local edge lengths at
+/// most.
 pub fn fly(
     scene: &CollisionScene,
     call: &CallInput,
@@ -111,8 +114,8 @@ impl Bodies {
         sums.iter().zip(counts).map(|(sum, count)| sum / (count as f64).max(1.0)).collect()
     }
 
-    /// Makes those one group that come near each other if each group moves by its mean displacement [m]. Whether there
-    /// are any.
+    /// Makes those one group that come near each other if each group moves by its mean displacement [m].
+    /// Whether there are any.
     fn unite(&mut self, scene: &CollisionScene, means: &[Vector]) -> bool {
         let mut any = false;
         for a in 0..self.boxes.len() {
@@ -149,8 +152,8 @@ impl Bodies {
     }
 }
 
-/// Whether two boxes stay farther apart than `least` [m] along one axis while the second moves by `motion` [m] relative to
-/// the first.
+/// Whether two boxes stay farther apart than `least` [m] along one axis while the second moves by `motion`
+/// [m] relative to the first.
 fn stay_apart([a, b]: [&Aabb; 2], motion: &Vector, least: f64) -> bool {
     (0..3).any(|k| {
         let sides = [(b.min[k] - a.max[k], motion[k]), (a.min[k] - b.max[k], -motion[k])];

@@ -1,7 +1,8 @@
-//! Scenes of `bowknot-twoway` on an engine: a processor of the two-way loop, which makes several steps per submission.
+//! Scenes of `bowknot-twoway` on an engine: a processor of the two-way loop, which makes several steps per
+//! submission.
 //!
-//! Positions lie on a [grid](crate::Grid). Sweeps go through rows and edges in another order than on the CPU, so that it may
-//! take other steps. What the kernels do not have is refused.
+//! Positions lie on a [grid](crate::Grid). Sweeps go through rows and edges in another order than on the CPU,
+//! so that it may take other steps. What the kernels do not have is refused.
 
 mod device;
 mod error;

@@ -39,7 +39,8 @@ pub fn multipliers(row: &ContactRow) -> Option<PairMultipliers> {
     Some(PairMultipliers { kind, elements, normal: row.multiplier, friction: row.friction * sign })
 }
 
-/// What a pair carries, as the device names it: the inverse of [`multipliers`]. None if no device numbers as many elements.
+/// What a pair carries, as the device names it: the inverse of [`multipliers`]. None if no device numbers as
+/// many elements.
 pub fn carried(pair: &PairMultipliers) -> Option<Carried> {
     let kind = match pair.kind {
         PairKind::VertexVertex => Kind::VertexVertex,

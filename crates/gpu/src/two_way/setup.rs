@@ -12,8 +12,8 @@ pub fn longest_travel(scene: &CollisionScene) -> f64 {
     scene.params().solver.forward.trust_region_max
 }
 
-/// The scene on the engine, on a grid with room from `positions` to `ends` [m], and the grid around the positions `home`
-/// that it begins with. Trees are ordered by the positions `order`.
+/// The scene on the engine, on a grid with room from `positions` to `ends` [m], and the grid around the
+/// positions `home` that it begins with. Trees are ordered by the positions `order`.
 pub fn collision<E: Engine>(
     engine: E,
     scene: &CollisionScene,

@@ -70,9 +70,9 @@ pub type Block = (Vec<Point>, Vec<[u32; 4]>);
 /// Points and edges.
 pub type Locks = (Vec<Point>, Vec<[u32; 2]>);
 
-/// Cloth that is isotropic, woven, damped, curved, of a `sheet` with a curvature; solids of both laws, of a `block`, and
-/// strands, `locks` with a radius of curls [m], with and without damping. Strands resist turns by `turning` times their
-/// stretch stiffness and the square of an edge.
+/// Cloth that is isotropic, woven, damped, curved, of a `sheet` with a curvature; solids of both laws, of a
+/// `block`, and strands, `locks` with a radius of curls [m], with and without damping. Strands resist turns
+/// by `turning` times their stretch stiffness and the square of an edge.
 pub fn of_every_kind(
     sheet: &dyn Fn(f64) -> Sheet,
     block: &dyn Fn() -> Block,

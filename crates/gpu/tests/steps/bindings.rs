@@ -16,8 +16,9 @@ fn limited_twins(bytes: u64) -> TwinEngine {
     engine
 }
 
-/// Two calls, judged after each step: everything goes four edges aside until it has arrived, then it is folded through
-/// everything for eight steps. The numbers of steps and of most candidates of each call, and where it ends.
+/// Two calls, judged after each step: everything goes four edges aside until it has arrived, then it is
+/// folded through everything for eight steps. The numbers of steps and of most candidates of each call, and
+/// where it ends.
 fn judged_calls<E: Engine>(engine: E, submitted: usize) -> ([(usize, usize); 2], Vec<Point>, E) {
     let mut scene = scene();
     let judge = Judge::from_model(&scene.model);
@@ -57,7 +58,8 @@ fn judged_calls<E: Engine>(engine: E, submitted: usize) -> ([(usize, usize); 2],
     (counts, scene.x, collision.into_engine())
 }
 
-/// Where a device does not bind all candidates, trust regions shrink: calls take more steps and end where they should.
+/// Where a device does not bind all candidates, trust regions shrink: calls take more steps and end where
+/// they should.
 #[test]
 fn a_device_that_binds_few_candidates_takes_more_steps() {
     let (plenty, _, _) = judged_calls(TwinEngine::new(), 1);

@@ -122,8 +122,8 @@ fn phases_of_steps_are_measured_between_time_stamps() {
     assert_eq!(collision.take_phase_seconds(), Some(PhaseSeconds::default()));
 }
 
-/// However many steps are submitted together, with many buckets of contact rows. Some of them end their submission: a
-/// rule is met.
+/// However many steps are submitted together, with many buckets of contact rows. Some of them end their
+/// submission: a rule is met.
 #[test]
 fn two_runs_on_one_device_have_the_same_bits() {
     let stop = Stop {
@@ -155,8 +155,8 @@ fn two_runs_on_one_device_have_the_same_bits() {
     assert!(halted > 0);
 }
 
-/// Pins among free vertices, all over two sheets that are folded through everything: every kernel does what its twin does,
-/// also while some of the pins make no progress.
+/// Pins among free vertices, all over two sheets that are folded through everything: every kernel does what
+/// its twin does, also while some of the pins make no progress.
 #[test]
 fn kernels_and_twins_agree_on_rows_with_pins() {
     let scene = scene();

@@ -132,8 +132,8 @@ pub fn distance(x: &[Point], y: &[Point]) -> f64 {
     (squares / x.len() as f64).sqrt()
 }
 
-/// A sheet of n x n vertices that hangs from a row of vertices that do not move; which these are, and targets so far
-/// below.
+/// A sheet of n x n vertices that hangs from a row of vertices that do not move; which these are, and targets
+/// so far below.
 pub fn hanging_sheet(n: u32, depth: f64) -> (Scene, Vec<bool>, Vec<Point>) {
     let x: Vec<Point> =
         (0..n * n).map(|k| Point::new(EDGE * f64::from(k % n), 0.0, -EDGE * f64::from(k / n))).collect();

@@ -29,8 +29,8 @@ fn scattered(count: usize) -> Scene {
     Scene { model: CollisionModel::single_body(topology), x, edge: EDGE }
 }
 
-/// A workgroup keeps the rows of a bucket if they are no more than its threads and have no more vertices than its table has
-/// slots (sweep_rows.wgsl): buckets on both sides of both limits.
+/// A workgroup keeps the rows of a bucket if they are no more than its threads and have no more vertices than
+/// its table has slots (sweep_rows.wgsl): buckets on both sides of both limits.
 #[test]
 fn sweeps_of_rows_that_a_workgroup_keeps_and_of_others_are_those_of_the_twin() {
     for count in [100, 128, 150, 256, 300] {
@@ -93,8 +93,8 @@ fn errors_by_number_of_sweeps() {
     }
 }
 
-/// The table of `docs/gpu/collisions.md`: how far the aim of a first step is from that after many sweeps, with contact rows in one
-/// bucket and in many.
+/// The table of `docs/gpu/collisions.md`: how far the aim of a first step is from that after many sweeps,
+/// with contact rows in one bucket and in many.
 #[test]
 #[ignore = "it prints a table"]
 fn errors_by_buckets_of_contact_rows() {
@@ -131,8 +131,8 @@ fn errors_by_buckets_of_contact_rows() {
     }
 }
 
-/// Two sheets of n x n vertices above each other, closer than they should be, and targets in which they have changed
-/// places, and are stretched.
+/// Two sheets of n x n vertices above each other, closer than they should be, and targets in which they have
+/// changed places, and are stretched.
 fn pressed_sheets(n: u32) -> (Scene, Vec<Point>) {
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     for sheet in 0..2 {
@@ -151,8 +151,8 @@ fn pressed_sheets(n: u32) -> (Scene, Vec<Point>) {
     (Scene { model, x, edge: EDGE }, target)
 }
 
-/// A cube of n x n x n grains on the ground, closer than they should be, and targets in which it is flatter by a fifth and
-/// below the ground.
+/// A cube of n x n x n grains on the ground, closer than they should be, and targets in which it is flatter
+/// by a fifth and below the ground.
 fn pressed_grains(n: u32) -> (Scene, Vec<Point>) {
     let mut random = fastrand::Rng::with_seed(1);
     let mut grain = |k: u32| {
@@ -171,8 +171,8 @@ fn pressed_grains(n: u32) -> (Scene, Vec<Point>) {
     (Scene { model, x, edge: DELTA }, target)
 }
 
-/// A sheet of 5 x 5 vertices on one of 65 x 65, closer than they should be, and targets in which they have changed places: more
-/// rows hold each vertex of the coarse sheet than there are colors.
+/// A sheet of 5 x 5 vertices on one of 65 x 65, closer than they should be, and targets in which they have
+/// changed places: more rows hold each vertex of the coarse sheet than there are colors.
 fn coarse_on_fine() -> (Scene, Vec<Point>) {
     const FINE: u32 = 65;
     const COARSE: u32 = 5;
@@ -194,7 +194,8 @@ fn coarse_on_fine() -> (Scene, Vec<Point>) {
     (Scene { model, x, edge: 0.25 * EDGE }, target)
 }
 
-/// Rows without a color share the masses of their vertices, and are swept at once: alike by kernels and twins, and twice alike.
+/// Rows without a color share the masses of their vertices, and are swept at once: alike by kernels and
+/// twins, and twice alike.
 #[test]
 fn sweeps_of_rows_without_a_color_are_those_of_the_twin() {
     let (scene, target) = coarse_on_fine();
@@ -219,8 +220,8 @@ fn sweeps_of_rows_without_a_color_are_those_of_the_twin() {
     }
 }
 
-/// The table of `docs/gpu/collisions.md`: how far the aim of a first step is from that after many sweeps where a few vertices
-/// have most of the rows, and seconds of a step.
+/// The table of `docs/gpu/collisions.md`: how far the aim of a first step is from that after many sweeps
+/// where a few vertices have most of the rows, and seconds of a step.
 #[test]
 #[ignore = "it prints a table"]
 fn errors_with_rows_that_have_no_color() {

@@ -92,7 +92,8 @@ impl<'k> Body<'k> {
         }
     }
 
-    /// Whether all threads make a statement together: they wait for each other in it, or it leaves one in which they do.
+    /// Whether all threads make a statement together: they wait for each other in it, or it leaves one in
+    /// which they do.
     fn is_of_all(&self, statement: &Statement) -> bool {
         let alone = Block::from_vec(vec![statement.clone()]);
         self.kernel.has_waits(&alone) || leaves(&alone, true, true)

@@ -8,11 +8,12 @@ use bowknot_dynamics::NewtonBackend;
 use bowknot_geometry::Vector;
 use nalgebra::{DMatrix, DVector};
 
-/// The inverses of domains are shifted by 4e-6 of their diagonals, which acts on bodies that are stiffer than their inertia.
+/// The inverses of domains are shifted by 4e-6 of their diagonals, which acts on bodies that are stiffer than
+/// their inertia.
 const SHIFT: f64 = 1e-3;
 
-/// Motions of a domain, as columns over the components of its nodes, and the inverse of their matrix. Of a node of
-/// block-Jacobi the columns are its components.
+/// Motions of a domain, as columns over the components of its nodes, and the inverse of their matrix. Of a
+/// node of block-Jacobi the columns are its components.
 struct Correction {
     nodes: Vec<u32>,
     motions: DMatrix<f64>,
@@ -86,7 +87,8 @@ fn corrections(
     corrections
 }
 
-/// Begins a target and solves, which makes the preconditioner. Returns the iterate and the number of iterations.
+/// Begins a target and solves, which makes the preconditioner. Returns the iterate and the number of
+/// iterations.
 fn solve(fixture: &Fixture, solver: &mut ConjugateGradients<TwinEngine>) -> (Vec<Vector>, usize) {
     let x = fixture.begin(solver);
     solver.linearize(false).expect("runs");
@@ -109,8 +111,8 @@ fn squared_norm(solver: &mut ConjugateGradients<TwinEngine>, r: &DVector<f64>) -
     read[0][norms].iter().map(|bits| f64::from(f32::from_bits(*bits))).sum()
 }
 
-/// Norms of smooth and rough vectors on the twins are those of the definition up to a share `most`. Returns the number of
-/// coarse levels.
+/// Norms of smooth and rough vectors on the twins are those of the definition up to a share `most`. Returns
+/// the number of coarse levels.
 fn assert_norms(fixture: &Fixture, most: f64) -> usize {
     let mut solver = solver(TwinEngine::new(), fixture);
     let (x, _) = solve(fixture, &mut solver);
@@ -138,7 +140,8 @@ fn norms_are_those_of_the_sum_over_levels() {
     assert!(levels.contains(&0) && levels.contains(&1), "{levels:?}");
 }
 
-/// Three coarse levels are made by one dispatch, in which no level waits for another, and the fourth by the next one.
+/// Three coarse levels are made by one dispatch, in which no level waits for another, and the fourth by the
+/// next one.
 #[test]
 fn there_may_be_four_coarse_levels() {
     let mut fixture = Fixture::of_cloth(32);
@@ -148,8 +151,9 @@ fn there_may_be_four_coarse_levels() {
     assert_eq!(assert_norms(&fixture, SHIFT), 4);
 }
 
-/// The spin of a strand that is nearly straight about itself moves next to nothing: in single precision the force on it is
-/// rounding, which made norms wrong by orders of magnitude. The definition, as it is computed here, leaves soft motions out.
+/// The spin of a strand that is nearly straight about itself moves next to nothing: in single precision the
+/// force on it is rounding, which made norms wrong by orders of magnitude. The definition, as it is computed
+/// here, leaves soft motions out.
 #[test]
 fn straight_strands_do_not_spin_about_themselves() {
     assert_norms(&Fixture::of_strand(150), 4.0);

@@ -30,7 +30,8 @@ fn right_sides_and_solutions_are_those_of_dense_algebra() {
             println!("{}: b off by {error:.1} units, of {:.1e}", fixture.name, largest(&b) / unit);
             assert!(error < 40.0, "{}: {error}", fixture.name);
             let expected = dense_solve(&h, &b, &fixture.free);
-            // In the norm of H: the residual is as small in that of the preconditioner, which approximates the inverse.
+            // In the norm of H: the residual is as small in that of the preconditioner, which approximates
+            // the inverse.
             let norm = |p: &DVector<f64>| p.dot(&(&h * p)).sqrt();
             let error = norm(&(&p - &expected)) / norm(&expected);
             println!("{}: p off by {error:.1e}, {} iterations", fixture.name, solved.info.iterations);
@@ -120,7 +121,8 @@ fn units_of_force_make_no_difference() {
     }
 }
 
-/// Rounds correct each other until single precision gains too little; limits of iterations are kept on the way.
+/// Rounds correct each other until single precision gains too little; limits of iterations are kept on the
+/// way.
 #[test]
 fn rounds_follow_until_they_gain_too_little() {
     let fixture = &fixtures()[0];

@@ -31,7 +31,8 @@ fn components_get_their_momentum() {
             let mut ways = Vec::new();
             for (c, sum) in sums.iter().enumerate() {
                 let expected: Vector = nodes(c).map(|n| -gradient[n] - step.row_sums[n] * p[n]).sum();
-                // The pairs of bending and elements are exact in double precision; here inertia alone is rounded.
+                // The pairs of bending and elements are exact in double precision; here inertia alone is
+                // rounded.
                 let moved = |n: usize| x[n] - step.start[n] + p[n];
                 let scale: f64 = nodes(c).map(|n| (step.row_sums[n] * moved(n)).norm()).sum();
                 let error = (sum - expected).norm() / scale;

@@ -99,7 +99,8 @@ fn iterates_move_and_return() {
     assert!(returned != moved);
 }
 
-/// An iterate far from where the step began: the grid becomes coarser, and all that lies on it stays where it is.
+/// An iterate far from where the step began: the grid becomes coarser, and all that lies on it stays where it
+/// is.
 #[test]
 fn grids_change_within_a_step() {
     for fixture in fixtures() {
@@ -152,8 +153,8 @@ fn grids_change_within_a_step() {
     }
 }
 
-/// Newton iterations end where the gradient in double precision vanishes, but for what single precision leaves of large
-/// forces that cancel.
+/// Newton iterations end where the gradient in double precision vanishes, but for what single precision
+/// leaves of large forces that cancel.
 #[test]
 fn newtons_method_ends_at_the_minimum_of_double_precision() {
     for mut fixture in fixtures() {

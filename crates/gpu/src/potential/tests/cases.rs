@@ -1,4 +1,5 @@
-//! Bodies in states that a device distinguishes, with all positions on a grid: those in double precision are the same.
+//! Bodies in states that a device distinguishes, with all positions on a grid: those in double precision are
+//! the same.
 
 use crate::assembly::StateGrid;
 use crate::potential::Places;
@@ -125,8 +126,9 @@ impl Problem {
         Places { positions, start, quantum: self.quantum as f32 }
     }
 
-    /// The sum over its elements of stiffness times length by each node [N], as a body has it whose lengths are up to
-    /// `stretch` times those at rest: the forces to which rounding of the elements' gradients is relative.
+    /// The sum over its elements of stiffness times length by each node [N], as a body has it whose lengths
+    /// are up to `stretch` times those at rest: the forces to which rounding of the elements' gradients is
+    /// relative.
     pub fn force_scales(&self, stretch: f64) -> Vec<f64> {
         let mut scales = vec![0.0; self.model.rest.len()];
         let steepest = |gradients: &[f64]| gradients.iter().fold(0.0f64, |most, g| most.max(g.abs()));
