@@ -1,6 +1,7 @@
 //! The fixed data of a scene's collisions: topology, bodies with their filters, half-spaces.
 
 use crate::half_space::HalfSpace;
+use crate::identity::Identity;
 use crate::topology::Topology;
 use serde::{Deserialize, Serialize};
 
@@ -76,6 +77,7 @@ pub struct CollisionModel {
     vertex_component: Vec<u32>,
     bodies: Vec<BodyFilter>,
     half_spaces: Vec<HalfSpace>,
+    identity: Identity,
 }
 
 impl CollisionModel {
@@ -108,7 +110,8 @@ impl CollisionModel {
             Some(error) => Err(error),
             None => {
                 let vertex_component = topology.connected_components().of_vertex;
-                Ok(Self { topology, vertex_body, vertex_component, bodies, half_spaces })
+                let identity = Identity::unique();
+                Ok(Self { topology, vertex_body, vertex_component, bodies, half_spaces, identity })
             }
         }
     }
@@ -118,7 +121,8 @@ impl CollisionModel {
         let vertex_body = vec![0; topology.vertex_count];
         let vertex_component = topology.connected_components().of_vertex;
         let bodies = vec![BodyFilter::DEFORMABLE];
-        Self { topology, vertex_body, vertex_component, bodies, half_spaces: Vec::new() }
+        let identity = Identity::unique();
+        Self { topology, vertex_body, vertex_component, bodies, half_spaces: Vec::new(), identity }
     }
 
     /// Changes the filters of the bodies and the half-spaces, one entry per body and per half-space. Nothing
@@ -129,6 +133,13 @@ impl CollisionModel {
     pub fn set_filters(&mut self, bodies: &[BodyFilter], half_spaces: &[HalfSpace]) {
         self.bodies.copy_from_slice(bodies);
         self.half_spaces.copy_from_slice(half_spaces);
+        self.identity = Identity::unique();
+    }
+
+    /// Tells the model, with its present filters, from all others: its clones have the same identity, and
+    /// [`Self::set_filters`] gives it a new one.
+    pub fn identity(&self) -> Identity {
+        self.identity
     }
 
     /// Vertices, edges and triangles.
@@ -170,5 +181,22 @@ impl CollisionModel {
             return false;
         }
         if body_a == body_b { a.self_collision } else { a.groups & b.mask != 0 && b.groups & a.mask != 0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_model_keeps_its_identity_until_its_filters_change() {
+        let triangle = || Topology::builder(3).triangles([[0, 1, 2]]).build().unwrap();
+        let mut model = CollisionModel::single_body(triangle());
+        let copy = model.clone();
+        assert_eq!(model.identity(), copy.identity());
+        assert_ne!(model.identity(), CollisionModel::single_body(triangle()).identity());
+        assert_ne!(model.identity(), CollisionModel::default().identity());
+        model.set_filters(&[BodyFilter::OBSTACLE], &[]);
+        assert_ne!(model.identity(), copy.identity());
     }
 }

@@ -4,7 +4,7 @@
 use crate::assemble::PartnerTable;
 use crate::pairs::Candidate;
 use crate::traverse::TaskResult;
-use bowknot_geometry::{PairKind, Topology};
+use bowknot_geometry::{Identity, PairKind, Topology};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -16,6 +16,8 @@ const CHUNK: usize = 512;
 #[derive(Clone, Debug, Default)]
 pub struct CandidateList {
     kinds: [Candidates; 4],
+    /// Tells this state of the list from all others, so that the search knows the one that it has left.
+    pub(crate) identity: Identity,
 }
 
 /// Candidate pairs of one kind.
@@ -51,6 +53,7 @@ impl CandidateList {
             kind.starts.clear();
             kind.partners.clear();
         }
+        self.identity = Identity::default();
     }
 
     /// Takes the pairs that a search has found. `changed`: it has searched only pairs of which a vertex has
@@ -69,6 +72,7 @@ impl CandidateList {
             };
             kind.take(&tables[k], &tasks[k], replaces);
         }
+        self.identity = Identity::unique();
     }
 }
 

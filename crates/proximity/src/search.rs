@@ -13,7 +13,7 @@ use crate::pairs::{Pair, PairList};
 use crate::statistics::SearchStatistics;
 use crate::traverse::{Query, Scene, Scratch, TASK_LEAVES, TaskResult, overlapping_leaves, search_leaves};
 use crate::tree::Tree;
-use bowknot_geometry::{CollisionModel, PairKind, Point, Separation, Vector};
+use bowknot_geometry::{CollisionModel, Identity, PairKind, Point, Separation, Vector};
 use rayon::prelude::*;
 use std::sync::Mutex;
 
@@ -26,8 +26,13 @@ const MOVING: u8 = 1;
 const RESTING: u8 = 2;
 
 /// Finds pairs. It keeps its trees and buffers between calls.
+///
+/// Each call compares the model with that of the last one, in constant time. For another model, or one whose
+/// filters have changed, it begins anew: no pair is lost, the trees are built again.
 #[derive(Debug, Default)]
 pub struct ProximitySearch {
+    /// Of the model that everything below belongs to.
+    model: Identity,
     /// Deformable surface vertices, ascending.
     deformable: Vec<u32>,
     /// Layer of each vertex.
@@ -38,8 +43,8 @@ pub struct ProximitySearch {
     origin: Option<Point>,
     /// Whether the trees are those of the last [`Self::update`].
     updated: bool,
-    /// Whether there was an update: its list may be updated where vertices have changed.
-    listed: bool,
+    /// Of the list of the last update, which may be updated where vertices have changed.
+    listed: Option<Identity>,
     local: Vec<LocalVertex>,
     end: Vec<LocalVertex>,
     layers: [Layer; 3],
@@ -65,7 +70,7 @@ struct Leaves {
 }
 
 impl ProximitySearch {
-    /// A search over the primitives of `model`; every call must pass the same model.
+    /// A search over the primitives of `model`.
     pub fn new(model: &CollisionModel) -> Self {
         let topology = model.topology();
         let deformable: Vec<u32> =
@@ -78,6 +83,7 @@ impl ProximitySearch {
             layer_of_vertex,
             obstacles: ObstacleTracker::new(model),
             collisions: CollisionMatrix::new(model),
+            model: model.identity(),
             local: vec![[0.0; 4]; topology.vertex_count],
             ..Self::default()
         }
@@ -134,9 +140,9 @@ impl ProximitySearch {
     /// place of their contact geometry, and without those of half-spaces.
     ///
     /// With `changed`, only the vertices that it marks (one entry per vertex) have other positions or radii
-    /// than in the last call, which must have been for the same list. Only pairs with such a vertex are then
-    /// searched for; all others stay. That pays where few vertices have changed. The first call searches
-    /// everything, and so does one for which an obstacle begins or ends to move.
+    /// than in the last call. Only pairs with such a vertex are then searched for; all others stay. That pays
+    /// where few vertices have changed. A call searches everything if it is the first, if `list` is not as
+    /// the last call left it, if the model is another one, or if an obstacle begins or ends to move.
     ///
     /// Which pairs are listed whose distance equals the sum of their radii up to rounding in `f32` may depend
     /// on earlier calls; no pair is lost.
@@ -154,7 +160,8 @@ impl ProximitySearch {
         self.begin(model, positions, radii);
         let obstacles = self.obstacles.update(model, positions, None, radii);
         // An obstacle that begins or ends to move changes its trees.
-        let changed = changed.filter(|_| self.listed && !obstacles.layers);
+        let is_kept = self.listed.is_some_and(|listed| listed == list.identity);
+        let changed = changed.filter(|_| is_kept && !obstacles.layers);
         match changed {
             Some(changed) if self.updated => self.update_changed_trees(positions, radii, changed),
             Some(changed) => {
@@ -169,7 +176,7 @@ impl ProximitySearch {
         self.fill_tables(model);
         list.take(model.topology(), &self.tables, &self.tasks, changed);
         self.count(list.len());
-        (self.updated, self.listed) = (true, true);
+        (self.updated, self.listed) = (true, Some(list.identity));
     }
 
     /// Notes that vertices have moved although the next [`Self::update`] will not mark them as changed, such
@@ -238,8 +245,10 @@ impl ProximitySearch {
 
     /// Begins a search.
     fn begin(&mut self, model: &CollisionModel, positions: &[Point], radii: &[f64]) {
+        if self.model != model.identity() {
+            *self = Self::new(model);
+        }
         let count = model.topology().vertex_count;
-        assert_eq!(count, self.layer_of_vertex.len(), "the model must be the one given to `new`");
         assert_eq!(positions.len(), count, "one position per vertex");
         assert_eq!(radii.len(), count, "one radius per vertex");
         self.statistics = SearchStatistics::default();

@@ -109,3 +109,37 @@ fn a_vertex_that_is_not_finite_leaves_the_list_and_comes_back() {
     search.update(&scene.model, &scene.positions, &scene.radii, Some(&changed), &mut list);
     assert!(pairs(&scene, &list) == before);
 }
+
+/// Without a change marked, a list that is not as the last call left it would stay as it is.
+#[test]
+fn a_list_that_another_call_has_left_is_searched_anew() {
+    let mut scene = scene();
+    let mut search = ProximitySearch::new(&scene.model);
+    let mut list = CandidateList::default();
+    search.update(&scene.model, &scene.positions, &scene.radii, None, &mut list);
+    let mut copy = list.clone();
+    let unchanged = vec![false; scene.positions.len()];
+    let still = vec![bowknot_geometry::Vector::zeros(); unchanged.len()];
+    scene.radii.iter_mut().for_each(|radius| *radius *= 1.5);
+    search.update(&scene.model, &scene.positions, &scene.radii, None, &mut list);
+    let expected = expected(&scene);
+    let (x, radii) = (&scene.positions, &scene.radii);
+
+    search.update(&scene.model, x, radii, Some(&unchanged), &mut list);
+    assert_eq!(search.statistics().candidates, 0, "a list that is kept needs no search");
+    let mut others = [copy.clone(), CandidateList::default(), CandidateList::default(), list.clone()];
+    ProximitySearch::new(&scene.model).update(&scene.model, x, &small_radii(radii), None, &mut others[1]);
+    others[3].clear();
+    for other in &mut others {
+        search.update(&scene.model, x, radii, Some(&unchanged), other);
+        assert!(pairs(&scene, other) == expected);
+    }
+    search.list_swept(&scene.model, x, &still, &small_radii(radii), &mut copy);
+    search.update(&scene.model, x, radii, Some(&unchanged), &mut copy);
+    assert!(pairs(&scene, &copy) == expected);
+}
+
+/// Radii with which few pairs are listed.
+fn small_radii(radii: &[f64]) -> Vec<f64> {
+    radii.iter().map(|radius| 0.1 * radius).collect()
+}

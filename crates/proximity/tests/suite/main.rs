@@ -3,5 +3,6 @@
 mod brute_force;
 mod candidates;
 mod determinism;
+mod models;
 mod scenes;
 mod swept;
