@@ -7,6 +7,9 @@ use toml::Table;
 /// The crate that every crate may depend on.
 const SHARED: &str = "bowknot-errors";
 
+/// The crate by which the tests of a consumer may judge what its library does.
+const JUDGE: &str = "bowknot-check";
+
 /// The crates of the workspace that each crate may depend on, beside [`SHARED`]. A crate that is not listed
 /// fails the test.
 const ALLOWED: &[(&str, &[&str])] = &[
@@ -167,9 +170,14 @@ fn dependencies_point_down() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Faults of a consumer of a library: it must use the library and no other package of ours.
+/// Faults of a consumer of a library: it must use the library and no other package of ours, but for the judge
+/// in its tests.
 fn consumer_faults(short: &str, library: &str, consumer: &Table) -> Vec<String> {
-    let used = our_dependencies(consumer);
+    let mut consumer = consumer.clone();
+    if let Some(of_tests) = consumer.get_mut("dev-dependencies").and_then(|value| value.as_table_mut()) {
+        of_tests.remove(JUDGE);
+    }
+    let used = our_dependencies(&consumer);
     let mut faults = Vec::new();
     if !used.iter().any(|package| package == library) {
         faults.push(format!("tests/consumers/{short} does not use {library}"));
@@ -262,6 +270,13 @@ fn dependent_consumers_are_seen() {
     let consumer =
         |text: &str| consumer_faults("stepper", "bowknot-stepper", &text.parse().expect("valid TOML"));
     assert!(consumer("dependencies.bowknot-stepper.workspace = true").is_empty());
+    let judged =
+        |table| format!("dependencies = {{ bowknot-stepper = '0.1' }}\n{table}.bowknot-check = '0.1'");
+    assert!(consumer(&judged("dev-dependencies")).is_empty());
+    assert_eq!(
+        consumer(&judged("build-dependencies")),
+        ["tests/consumers/stepper must not need bowknot-check"]
+    );
     assert_eq!(
         consumer("dependencies.serde = '1'"),
         ["tests/consumers/stepper does not use bowknot-stepper"]

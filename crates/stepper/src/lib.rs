@@ -6,6 +6,8 @@
 // Results have the same bits on every machine; tests may use the system's functions.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod error;
+mod forward;
 mod params;
 mod rounding;
 mod stepper;
@@ -17,6 +19,8 @@ pub use bowknot_geometry as geometry;
 pub use bowknot_proximity as proximity;
 
 pub use bowknot_errors::{Errors, ParamError, Parameters};
+pub use error::ForwardError;
+pub use forward::{Forward, ForwardOptions, ForwardReport};
 pub use params::{Bound, ForwardParams, TrustRegionRule};
 pub use rounding::Rounding;
 pub use stepper::{Contacts, StepReport, Stepper, Tubes};
