@@ -514,16 +514,15 @@ impl<E: Engine> Collision<E> {
         Ok(collected(&on_grid, |&x| grid.position(x)))
     }
 
-    /// Orders the elements of the `model` in space anew, by any positions that are typical of the scene from
-    /// now on [m]. To be called between two calls: candidates have another order afterwards. Bodies that mix
-    /// cost time otherwise.
+    /// Orders the elements in space anew, by any positions that are typical of the scene from now on [m]. To be
+    /// called between two calls: candidates have another order afterwards. Bodies that mix cost time otherwise.
     ///
     /// # Errors
     /// A wrong length; positions that no grid holds; the device failed.
-    pub fn reorder(&mut self, model: &CollisionModel, order: &[Point]) -> Result<(), CollisionError> {
+    pub fn reorder(&mut self, order: &[Point]) -> Result<(), CollisionError> {
         check_length("positions", order.len(), self.sizes.vertices)?;
         let order = snapped_elsewhere(&self.grid, order)?;
-        self.trees.reorder(model.topology(), &order, &mut self.pending);
+        self.trees.reorder(&order, &mut self.pending);
         Ok(())
     }
 

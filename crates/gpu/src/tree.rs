@@ -60,6 +60,24 @@ impl Tree {
         tree
     }
 
+    /// The tree of the same elements, with their vertices at other positions.
+    pub fn reordered(&self, positions: &[GridPoint]) -> Self {
+        match self.vertex_count {
+            1 => Self::new(&self.elements::<1>(), positions),
+            2 => Self::new(&self.elements::<2>(), positions),
+            _ => Self::new(&self.elements::<3>(), positions),
+        }
+    }
+
+    /// The elements by index, each with its vertices.
+    fn elements<const V: usize>(&self) -> Vec<(u32, [u32; V])> {
+        let slots = self.slots.iter().filter(|slot| slot.element != NONE);
+        let mut elements: Vec<(u32, [u32; V])> =
+            slots.map(|slot| (slot.element, std::array::from_fn(|k| slot.vertices[k]))).collect();
+        elements.sort_unstable();
+        elements
+    }
+
     /// Whether there is no element.
     pub fn is_empty(&self) -> bool {
         self.levels.is_empty()

@@ -27,7 +27,7 @@ use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::stop::Residuals;
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, EdgeReference};
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Identity, Point, Vector};
 use bowknot_lcp::{self as lcp, ConstraintSet, Schedule, TangentVector};
 
 /// The default [`BackwardStep`]. `K` solves its rows, by default projected Gauss-Seidel.
@@ -38,7 +38,8 @@ pub struct LcpBackward<K = ColoredSweeps> {
     /// The edges that act; of solvers that keep to them.
     live: LiveEdges,
     selection: Selection,
-    /// The movable vertices and the stretch limits of bodies for which `edges` was made.
+    /// The scene, the movable vertices and the stretch limits of bodies for which `edges` was made.
+    scene: Identity,
     movable: Vec<bool>,
     stretch_limits: Vec<f64>,
     /// Multipliers of all edges (ball form); of solvers that do not keep to live edges.
@@ -166,16 +167,18 @@ impl<K: RowSolver> LcpBackward<K> {
         scene.params().contact.edge_form == EdgeForm::Ball && self.solver.keeps_to_live_edges()
     }
 
-    /// Notes which vertices are movable, and the stretch limits; returns whether they differ from those of
-    /// the last call.
+    /// Notes the scene, which vertices are movable, and the stretch limits; returns whether they differ from
+    /// those of the last call.
     fn edges_changed(&mut self, scene: &CollisionScene, state: &ResolveState) -> bool {
         let bodies = 0..scene.model().bodies().len() as u32;
         let limits = || bodies.clone().map(|body| scene.stretch_limit(body));
         let prescribed = state.call.prescribed();
-        let changed = !limits().eq(self.stretch_limits.iter().copied())
+        let changed = self.scene != scene.identity()
+            || !limits().eq(self.stretch_limits.iter().copied())
             || self.movable.len() != prescribed.len()
             || self.movable.iter().zip(prescribed).any(|(movable, prescribed)| movable == prescribed);
         if changed {
+            self.scene = scene.identity();
             self.stretch_limits = limits().collect();
             self.movable = prescribed.iter().map(|p| !p).collect();
         }

@@ -7,7 +7,7 @@ use crate::spacing::{MIN_SEPARATION_MARGIN, Spacing};
 use crate::validation::{check_finite, check_length, check_rows};
 use bowknot_constraints::{DeltaRule, Facing, Feature, FrictionModel, STRETCH_LIMIT};
 use bowknot_errors::{Checks, Parameters};
-use bowknot_geometry::{BodyFilter, HalfSpace, PairKind, Point, Separation, Vector};
+use bowknot_geometry::{BodyFilter, HalfSpace, Identity, PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CollisionModel, Pair};
 
 /// The lengths of a scene: those that parameters state, and the others from the mesh [m].
@@ -40,6 +40,7 @@ pub struct CollisionScene {
     params: Params,
     /// Tells contacts from pairs that are only close.
     facing: Facing,
+    identity: Identity,
 }
 
 impl CollisionScene {
@@ -90,12 +91,19 @@ impl CollisionScene {
             lengths,
             spacing,
             params,
+            identity: Identity::unique(),
         })
     }
 
     /// Topology, bodies, filters, half-spaces.
     pub fn model(&self) -> &CollisionModel {
         &self.model
+    }
+
+    /// Tells the scene from all others but its clones, whatever the filters of their bodies:
+    /// [`CollisionModel::identity`] tells these.
+    pub fn identity(&self) -> Identity {
+        self.identity
     }
 
     /// Number of vertices.

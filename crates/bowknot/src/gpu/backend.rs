@@ -20,8 +20,8 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
         true
     }
 
-    fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
-        Ok(Self::order(self, scene, positions)?)
+    fn order(&mut self, positions: &[Point]) -> Result<(), BackendError> {
+        Ok(Self::order(self, positions)?)
     }
 
     fn work(&self) -> DeviceWork {

@@ -28,7 +28,7 @@ pub trait CollisionBackend: Debug + Send {
     ///
     /// # Errors
     /// The backend has failed.
-    fn order(&mut self, _scene: &CollisionScene, _positions: &[Point]) -> Result<(), BackendError> {
+    fn order(&mut self, _positions: &[Point]) -> Result<(), BackendError> {
         Ok(())
     }
 

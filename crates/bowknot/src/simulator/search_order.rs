@@ -2,7 +2,6 @@
 
 use super::backend::{BackendError, CollisionBackend};
 use bowknot_geometry::Point;
-use bowknot_twoway::CollisionScene;
 
 /// Time steps for which a backend keeps the order. To order anew costs as much as a search or two on the
 /// host; in as many time steps things move past a few neighbors.
@@ -35,7 +34,6 @@ impl SearchOrder {
     pub fn tell(
         &mut self,
         backend: &mut dyn CollisionBackend,
-        scene: &CollisionScene,
         steps: usize,
         [home, positions]: [&[Point]; 2],
     ) -> Result<(), BackendError> {
@@ -46,7 +44,7 @@ impl SearchOrder {
             self.adopt(positions);
         }
         if std::mem::take(&mut self.is_new) {
-            backend.order(scene, if self.positions.is_empty() { home } else { &self.positions })?;
+            backend.order(if self.positions.is_empty() { home } else { &self.positions })?;
         }
         Ok(())
     }

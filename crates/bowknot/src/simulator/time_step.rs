@@ -90,10 +90,10 @@ impl Simulator {
 
     /// Tells the backend of collisions how to order what it searches in.
     fn order_search(&mut self) -> Result<(), SimulationError> {
-        let Self { world, resolver, backend, search_order, positions, step, .. } = self;
+        let Self { world, backend, search_order, positions, step, .. } = self;
         let count = world.collision_vertices();
         let places = [&world.positions[..count], &positions[..count]];
-        let told = search_order.tell(&mut **backend, resolver.scene(), *step, places);
+        let told = search_order.tell(&mut **backend, *step, places);
         told.map_err(|source| SimulationError::backend(world, *step, source))
     }
 

@@ -663,7 +663,7 @@ fn trees_are_ordered_anew_where_grains_have_mixed() {
     collision.place(&mixed).unwrap();
     let mut candidates = |reorders: bool| {
         if reorders {
-            collision.reorder(&model, &mixed).unwrap();
+            collision.reorder(&mixed).unwrap();
         }
         collision.begin(&Call::toward(&mixed)).unwrap();
         collision.search().unwrap();

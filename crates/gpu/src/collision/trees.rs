@@ -47,15 +47,10 @@ impl Trees {
 
     /// Orders the elements anew, by other positions. The buffers stay, for their sizes depend on the numbers
     /// of elements alone.
-    pub fn reorder(&mut self, topology: &Topology, positions: &[GridPoint], recording: &mut Recording) {
+    pub fn reorder(&mut self, positions: &[GridPoint], recording: &mut Recording) {
         let Self { surface, edges, triangles, particles, strands } = self;
-        let all = [surface, edges, triangles, particles, strands];
-        for (kept, tree) in all.into_iter().zip(ordered(topology, positions)) {
-            debug_assert_eq!(
-                (kept.tree.slots.len(), kept.tree.box_count),
-                (tree.slots.len(), tree.box_count)
-            );
-            kept.tree = tree;
+        for kept in [surface, edges, triangles, particles, strands] {
+            kept.tree = kept.tree.reordered(positions);
             kept.upload(recording);
         }
     }

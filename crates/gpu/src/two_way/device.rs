@@ -5,7 +5,7 @@ use super::judge::SceneJudge;
 use super::{flight, pairs, setup};
 use crate::{Call, Carried, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop};
 use bowknot_dynamics::DeviceWork;
-use bowknot_geometry::{BodyFilter, HalfSpace, Point};
+use bowknot_geometry::{BodyFilter, HalfSpace, Identity, Point};
 use bowknot_twoway::{
     AcceptedState, Call as RunningCall, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers,
     Processor, Progress, Residuals, ResolveInput, Resolver, Statistics, StopTest, max_stretch,
@@ -79,6 +79,8 @@ struct Prepared<E> {
 /// What a call may change of a scene.
 #[derive(Debug)]
 struct CallConstraints {
+    /// The scene itself; what may change follows.
+    scene: Identity,
     prescribed: Vec<bool>,
     groups: Vec<u32>,
     filters: Vec<BodyFilter>,
@@ -90,6 +92,7 @@ struct CallConstraints {
 impl CallConstraints {
     fn new(scene: &CollisionScene, call: &CallInput, input: &ResolveInput<'_>) -> Self {
         Self {
+            scene: scene.identity(),
             prescribed: call.prescribed().to_vec(),
             groups: input.groups.to_vec(),
             filters: scene.model().bodies().to_vec(),
@@ -99,7 +102,8 @@ impl CallConstraints {
     }
 
     fn are_those_of(&self, scene: &CollisionScene, call: &CallInput, input: &ResolveInput<'_>) -> bool {
-        self.prescribed == call.prescribed()
+        self.scene == scene.identity()
+            && self.prescribed == call.prescribed()
             && self.groups == input.groups
             && self.has_unknown == call.has_unknown()
             && self.filters == scene.model().bodies()
@@ -287,13 +291,13 @@ impl<E: Engine + Debug + Send> Device<E> {
     ///
     /// # Errors
     /// The device has failed.
-    pub fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), GpuResolveError> {
+    pub fn order(&mut self, positions: &[Point]) -> Result<(), GpuResolveError> {
         if self.order == positions {
             return Ok(());
         }
         self.order = positions.to_vec();
         let ordered = match &mut self.prepared {
-            Some(prepared) => prepared.collision.reorder(scene.model(), positions),
+            Some(prepared) => prepared.collision.reorder(positions),
             None => Ok(()),
         };
         if ordered.is_err() {

@@ -1,15 +1,15 @@
 //! Judges what a device computes, on the CPU: a faulty driver causes an error, never an intersecting state.
 
 use super::error::GpuResolveError;
-use bowknot_geometry::{BodyFilter, HalfSpace, Point};
+use bowknot_geometry::{Identity, Point};
 use bowknot_twoway::CollisionScene;
 use bowknot_twoway::check::{Judge, MotionJudge, StateOptions};
 
 /// The judge of a scene. To make one takes longer than to judge a state, so it is kept.
 #[derive(Debug, Default)]
 pub struct SceneJudge {
-    /// The judge, and the filters and half-spaces that it was made with, which may change.
-    made: Option<(Vec<BodyFilter>, Vec<HalfSpace>, MotionJudge)>,
+    /// The judge, and of the collision model that it was made for.
+    made: Option<(Identity, MotionJudge)>,
 }
 
 impl SceneJudge {
@@ -42,14 +42,8 @@ impl SceneJudge {
 
     fn of(&mut self, scene: &CollisionScene) -> &mut MotionJudge {
         let model = scene.model();
-        let fits = |(bodies, half_spaces, _): &(Vec<BodyFilter>, Vec<HalfSpace>, MotionJudge)| {
-            bodies == model.bodies() && half_spaces == model.half_spaces()
-        };
-        let make = || {
-            let judge = MotionJudge::new(Judge::from_model(model));
-            (model.bodies().to_vec(), model.half_spaces().to_vec(), judge)
-        };
-        let made = self.made.take().filter(fits).unwrap_or_else(make);
-        &mut self.made.insert(made).2
+        let made = self.made.take().filter(|(made_for, _)| *made_for == model.identity());
+        let make = || (model.identity(), MotionJudge::new(Judge::from_model(model)));
+        &mut self.made.insert(made.unwrap_or_else(make)).1
     }
 }

@@ -16,7 +16,7 @@ use crate::statistics::Statistics;
 use ahead::AheadPairs;
 pub use ahead::AheadVisitor;
 use bowknot_constraints::FrictionModel;
-use bowknot_geometry::{PairKind, Vector};
+use bowknot_geometry::{Identity, PairKind, Vector};
 use bowknot_proximity::{CandidateList, PairList, ProximitySearch};
 use bowknot_stepper::{Bound, TrustRegionRule};
 use flight::Flight;
@@ -31,6 +31,8 @@ const MAX_CHANGED: f64 = 0.5;
 /// The default [`Search`].
 #[derive(Debug)]
 pub struct TrustRegionSearch {
+    /// Of the scene and its collision model, to which everything below belongs.
+    scene: [Identity; 2],
     search: ProximitySearch,
     rule: TrustRegionRule,
     /// Whether all candidates are pairs of the state.
@@ -53,9 +55,11 @@ pub struct TrustRegionSearch {
 }
 
 impl TrustRegionSearch {
-    /// A search over the primitives of the scene.
+    /// A search over the primitives of the scene. A call for another scene, or after its filters have changed,
+    /// begins anew.
     pub fn new(scene: &CollisionScene) -> Self {
         Self {
+            scene: identities(scene),
             search: ProximitySearch::new(scene.model()),
             rule: scene.params().solver.forward.trust_region,
             complete: true,
@@ -69,6 +73,14 @@ impl TrustRegionSearch {
             requested: true,
             left: false,
             swept_radii: Vec::new(),
+        }
+    }
+
+    /// Begins anew if the scene is another one: its trust regions may lack margins, and its list has other
+    /// pairs.
+    fn follow(&mut self, scene: &CollisionScene) {
+        if self.scene != identities(scene) {
+            *self = Self::new(scene);
         }
     }
 
@@ -140,6 +152,10 @@ impl TrustRegionSearch {
         near.select(scene, state, listed, *complete, statistics);
         statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
     }
+}
+
+fn identities(scene: &CollisionScene) -> [Identity; 2] {
+    [scene.identity(), scene.model().identity()]
 }
 
 /// What [`CertifiedForward`](crate::CertifiedForward) and [`Resolver::adopt`](crate::Resolver::adopt) ask
@@ -281,6 +297,7 @@ impl TrustRegionSearch {
 
 impl Search for TrustRegionSearch {
     fn begin(&mut self, scene: &CollisionScene, state: &mut ResolveState, complete: bool) {
+        self.follow(scene);
         let forward = &scene.params().solver.forward;
         // The velocity filter looks at pairs that are still far, and so do isotropic bounds.
         let sees_all = scene.friction_model() == FrictionModel::Filter || forward.bound == Bound::Isotropic;
@@ -290,6 +307,7 @@ impl Search for TrustRegionSearch {
     }
 
     fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
+        self.follow(scene);
         let timer = Instant::now();
         if state.step == 0 {
             self.search_after_flight(scene, state);

@@ -10,6 +10,7 @@ mod flight;
 mod friction;
 mod obstacles;
 mod resolve;
+mod scenes;
 mod tutorial;
 /// What a call says that it waits for.
 mod waits;
