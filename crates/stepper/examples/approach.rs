@@ -5,6 +5,9 @@
 //! bound a target on the other side is approached until the minimum separation and no further: a step
 //! shortens the whole displacement; a target that does not lead through has to be found by the backward step.
 //!
+//! These are loose calls: the list has all pairs because there is only one. With a real search they need
+//! trust regions, see `Forward` and the example `drape`.
+//!
 //! `cargo run --release -p bowknot-stepper --example approach`
 #![allow(clippy::print_stdout)]
 

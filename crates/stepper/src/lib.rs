@@ -1,7 +1,10 @@
 //! The forward step: moves vertices toward a target along paths that are certified free of
 //! intersections, by distances alone.
 //!
-//! It knows pairs and their slabs. It knows no constraint, and not where targets come from.
+//! [`Forward`] is the step with everything that makes it safe: search, slabs, trust regions. [`Stepper`] has
+//! the same as loose calls, for solvers that keep lists of their own; alone, none of these makes a step safe.
+//!
+//! The crate knows pairs and their slabs. It knows no constraint, and not where targets come from.
 
 // Results have the same bits on every machine; tests may use the system's functions.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -45,7 +45,22 @@ pub struct StepReport {
     pub unhindered_lag: f64,
 }
 
-/// Workspace of the forward step: wanted displacements, step sizes, remaining fractions.
+/// Workspace of the forward step: wanted displacements, step sizes, remaining fractions. For solvers that keep
+/// lists of pairs of their own; [`Forward`](crate::Forward) composes a search with these calls.
+///
+/// # Loose calls
+/// Alone, none of these calls makes a step safe. [`Self::begin`], [`Self::set_target`], limits and
+/// [`Self::advance`], in this order, are a safe step from positions without intersections if
+/// - the list of pairs has every pair that could meet while each vertex stays in its ball, such as what a
+///   search within the radii of the balls finds;
+/// - all listed pairs limit the step, by [`Self::limit_by_planes`] or [`Self::limit_by_distances`], with their
+///   separations at the positions that it starts from;
+/// - [`Self::limit_by_trust_regions`], with the balls of that search, limits the step too (or, with one
+///   distance for all pairs that are not listed, [`Self::limit_by_non_candidates`]);
+/// - nothing but further limits follows before [`Self::advance`], which gets the same positions.
+///
+/// The others keep shapes ([`Self::limit_by_bodies`], [`Self::limit_by_groups`]) or choose lengths
+/// ([`Self::cap_travel`], [`Self::limit_travel`]). [`Self::limit_by_moving_planes`] has conditions of its own.
 #[derive(Debug, Default)]
 pub struct Stepper {
     /// d = y - x [m].
@@ -189,6 +204,9 @@ impl Stepper {
 
     /// Limits the vertices of every pair by the pair's slab. Returns the number of frozen pairs: those for
     /// which no direction certifies a gap above rounding.
+    ///
+    /// Alone it does not make a step safe: vertices still pass through what the list does not have, see
+    /// [`Self::limit_by_trust_regions`]. Separations must be those at the positions of the target's start.
     pub fn limit_by_planes(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
         let frozen = AtomicUsize::new(0);
         for kind in PairKind::ALL {
@@ -240,7 +258,9 @@ impl Stepper {
         false
     }
 
-    /// As [`Self::limit_by_planes`], for vertices that move in their `tubes`. A pair whose slab stays
+    /// As [`Self::limit_by_planes`], for vertices that move in their `tubes`, all at the same path time. Alone it
+    /// does not make a step safe: the list must have what could meet on these paths, and a vertex that the
+    /// limits keep from staying in its tube makes the others' limits wrong. A pair whose slab stays
     /// open while it moves along is not limited, so that motion common to both sides is free.
     ///
     /// Let the slab move by t f. Side *a* closes it by at most t max over a of -n.(u_i - f) plus its tube,
@@ -387,7 +407,8 @@ impl Stepper {
     }
 
     /// Limits the vertices of every pair to half of the pair's certified distance, whatever the direction
-    /// (paper, Eq. 18-20). Returns the number of frozen pairs.
+    /// (paper, Eq. 18-20). Returns the number of frozen pairs. Alone it does not make a step safe, as
+    /// [`Self::limit_by_planes`].
     pub fn limit_by_distances(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
         let rounding = self.rounding();
         let frozen = AtomicUsize::new(0);
@@ -409,7 +430,8 @@ impl Stepper {
     }
 
     /// Limits the move of every vertex to half of `distance` [m], a lower bound of the distances of all pairs
-    /// that are no candidates: the paper's D^(l).
+    /// that are no candidates: the paper's D^(l). It limits none of the candidates, and the distance is that of
+    /// the search less what vertices have moved since.
     pub fn limit_by_non_candidates(&self, distance: f64, damping: f64) {
         let room = (0.5 * damping * distance - self.rounding().step).max(0.0);
         (0..self.displacements.len())
@@ -428,6 +450,9 @@ impl Stepper {
 
     /// Keeps every vertex in its trust region. Returns whether a trust region, rather than a pair or a cap,
     /// limits some vertex: then the pairs should be searched again.
+    ///
+    /// It makes the list complete of which the trust regions are, and limits none of its pairs. Over many steps
+    /// with one list, roundings of positions may add up to more than the margin of the search.
     pub fn limit_by_trust_regions(&self, positions: &[Point], trust_regions: &TrustRegions) -> bool {
         (0..positions.len())
             .into_par_iter()
@@ -442,7 +467,7 @@ impl Stepper {
     }
 
     /// Makes every obstacle move as one: all its vertices take the smallest step size among them. Returns
-    /// the smallest step size of all obstacles.
+    /// the smallest step size of all obstacles. It keeps their shapes and guards against nothing.
     pub fn limit_by_bodies(&mut self, model: &CollisionModel, obstacle_vertices: &[u32]) -> f64 {
         if obstacle_vertices.is_empty() {
             return 1.0;
@@ -481,7 +506,7 @@ impl Stepper {
     }
 
     /// Takes the step x <- x + alpha d. The result is y up to rounding where alpha = 1, and exactly x where
-    /// alpha = 0.
+    /// alpha = 0. It is as safe as the limits that were set: without any, it goes to the target.
     pub fn advance(&mut self, positions: &mut [Point]) -> StepReport {
         let chunks = (
             self.alphas.par_chunks_mut(CHUNK),

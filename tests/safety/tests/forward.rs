@@ -5,7 +5,7 @@ use bowknot_geometry::{Point, Separation};
 use bowknot_proximity::{PairList, ProximitySearch};
 use bowknot_safety::search::{failing_share, search_many};
 use bowknot_safety::{Case, Scenario, StepChecker, Tally, scenario};
-use bowknot_stepper::{Contacts, Rounding, Stepper, TrustRegions};
+use bowknot_stepper::{Bound, Contacts, ForwardOptions, Rounding, Stepper, TrustRegions};
 
 struct Forward {
     search: ProximitySearch,
@@ -103,6 +103,46 @@ fn no_forward_step_by_planes_intersects() {
 #[test]
 fn no_forward_step_by_distances_intersects() {
     is_safe(false);
+}
+
+/// Runs the first call of a problem by composed steps, several of them with a list.
+fn check_composed(scenario: &Scenario, bound: Bound) -> Result<Tally, String> {
+    let tally = Tally { cases: 1, ..Tally::default() };
+    let Some(case) = scenario.case() else {
+        return Ok(Tally { unusable: 1, ..tally });
+    };
+    let prescribed: Vec<bool> = (0..case.positions.len()).map(|v| case.model.is_obstacle(v as u32)).collect();
+    let targets = scenario.calls[0].targets(&case, &case.positions, &prescribed, scenario.scale());
+    let (shortest, longest) = (1e-6 * scenario.scale(), 5e-2 * scenario.scale());
+    let radii = |x: &[Point]| -> Vec<f64> {
+        x.iter().zip(&targets).map(|(x, y)| (y - x).norm().clamp(shortest, longest)).collect()
+    };
+    let options = ForwardOptions { bound, ..ForwardOptions::default() };
+    let (model, start) = (case.model.clone(), case.positions.clone());
+    let mut forward = bowknot_stepper::Forward::new(model, start.clone(), &radii(&start), options)
+        .map_err(|error| error.to_string())?;
+    let mut checker = StepChecker::new(&case);
+    let mut is_due = false;
+    checker.follow(&case, &targets, 12, |x, y| {
+        if is_due {
+            forward.search(&radii(x)).expect("positions within bounds");
+        }
+        is_due = forward.advance(y).expect("a target per vertex").search_due;
+        forward.positions().to_vec()
+    });
+    let moved = usize::from(checker.largest_move > 0.0);
+    checker.fault.map_or(Ok(Tally { moved, steps: checker.steps, ..tally }), Err)
+}
+
+#[test]
+fn no_composed_step_intersects() {
+    for bound in [Bound::Planes, Bound::Isotropic] {
+        let check = |scenario: &_| check_composed(scenario, bound);
+        let tally = expect(search_many(6, 300 * seeds(), scenario::any, check));
+        assert!(2 * tally.moved >= tally.cases, "{tally:?}");
+        let tally = expect(search_many(7, 24 * seeds(), scenario::generated, check));
+        assert!(10 * tally.moved >= 9 * tally.cases, "{tally:?}");
+    }
 }
 
 /// The judge finds unsafe steps in these cases: steps by planes that use a tenth more than the whole gap, and
