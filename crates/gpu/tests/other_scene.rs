@@ -32,7 +32,7 @@ fn a_device_sees_another_scene_of_equal_size() {
     let mut device = Device::new("twins".to_owned(), TwinEngine::new());
     let (mut particles, start, y) = heap(false);
     device.prepare(particles.scene(), &start).expect("supported");
-    let mut resolve = |resolver: &mut Resolver, device: &mut Device<TwinEngine>| {
+    let resolve = |resolver: &mut Resolver, device: &mut Device<TwinEngine>| {
         let mut x = start.clone();
         device.resolve(resolver, &mut x, &y, &ResolveInput::default(), &mut ()).expect("a call");
         device.judge(resolver.scene(), &x).expect("nothing intersects");
