@@ -160,8 +160,8 @@ impl CollisionBackend for Comparing {
         self.device.is_ordered()
     }
 
-    fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
-        CollisionBackend::order(&mut self.device, scene, positions)
+    fn order(&mut self, positions: &[Point]) -> Result<(), BackendError> {
+        CollisionBackend::order(&mut self.device, positions)
     }
 
     fn resolution(&self) -> f64 {

@@ -11,7 +11,7 @@ fn start(height: f64) -> Vec<Point> {
 }
 
 fn topology() -> Topology {
-    Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap()
+    Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().expect("a topology")
 }
 
 fn model() -> CollisionModel {

@@ -246,8 +246,7 @@ fn is_positive(matrix: &Matrix4<f64>) -> bool {
     let mut left = *matrix;
     for k in 0..4 {
         let pivot = left[(k, k)];
-        // Also false for NaN.
-        if !(pivot > 0.0) {
+        if pivot <= 0.0 || pivot.is_nan() {
             return false;
         }
         let inverse = 1.0 / pivot;

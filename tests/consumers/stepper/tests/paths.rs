@@ -231,7 +231,7 @@ impl Problem {
         let chosen = ((random.next() + 1.0) * 0.5 * x.len() as f64) as usize;
         let point = center + random.vector() * way;
         let target = |(v, p): (usize, &Point)| match wish {
-            Wish::Through if model.vertex_body()[v] % 2 == 0 => p + up,
+            Wish::Through if model.vertex_body()[v].is_multiple_of(2) => p + up,
             Wish::Through => p - up,
             Wish::Scatter => p + random.vector() * way,
             Wish::Invert => p + (center - p) * (way / self.size()),
