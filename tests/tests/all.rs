@@ -1,10 +1,11 @@
 //! Integration tests that span several crates, in one binary.
 
-// Manifests keep to the layers, no files import each other in a circle, and named paths exist.
+// Manifests keep to the layers, no files import each other in a circle, named paths exist, and packages are whole.
 mod dynamics_backends;
 mod imports;
 mod layers;
 mod paths;
+mod publishing;
 // No step of the interior point baselines intersects.
 mod interior_points;
 // Degenerate contacts never intersect.

@@ -92,18 +92,18 @@ pub fn root() -> PathBuf {
     tests.parent().unwrap_or(tests).to_path_buf()
 }
 
-fn manifest(folder: &Path) -> Table {
+pub fn manifest(folder: &Path) -> Table {
     let path = folder.join("Cargo.toml");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     text.parse().unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-fn name(manifest: &Table) -> &str {
+pub fn name(manifest: &Table) -> &str {
     manifest["package"]["name"].as_str().expect("a package has a name")
 }
 
 /// Folders of a folder, sorted.
-fn folders(parent: &Path) -> Vec<PathBuf> {
+pub fn folders(parent: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(parent).unwrap_or_else(|error| panic!("{}: {error}", parent.display()));
     let mut folders: Vec<PathBuf> = entries
         .flatten()
@@ -116,7 +116,7 @@ fn folders(parent: &Path) -> Vec<PathBuf> {
 
 /// Names of our packages on which a package depends in any way: for building, for testing, on some target,
 /// under another name.
-fn our_dependencies(manifest: &Table) -> Vec<String> {
+pub fn our_dependencies(manifest: &Table) -> Vec<String> {
     let mut tables = vec![manifest];
     if let Some(targets) = manifest.get("target").and_then(|value| value.as_table()) {
         tables.extend(targets.values().filter_map(|value| value.as_table()));
@@ -211,42 +211,6 @@ fn every_library_is_usable_alone() {
 }
 
 /// The rule itself can fail.
-/// What a registry needs of a crate that its manifest lacks.
-fn publishing_faults(folder: &Path, manifest: &Table) -> Vec<String> {
-    let package = manifest["package"].as_table().expect("a table");
-    if package.get("publish").and_then(toml::Value::as_bool) == Some(false) {
-        return Vec::new();
-    }
-    let fields = ["description", "license", "repository", "readme", "keywords", "categories"];
-    let mut faults: Vec<String> = fields
-        .iter()
-        .filter(|field| !package.contains_key(**field))
-        .map(|field| format!("no {field}"))
-        .collect();
-    if let Some(readme) = package.get("readme").and_then(toml::Value::as_str)
-        && !folder.join(readme).exists()
-    {
-        faults.push(format!("no file {readme}"));
-    }
-    faults
-}
-
-/// Public crates have what `cargo publish` asks for; their dependencies on each other name a version.
-#[test]
-fn public_crates_can_be_published() {
-    for folder in folders(&root().join("crates")) {
-        let manifest = manifest(&folder);
-        assert_eq!(publishing_faults(&folder, &manifest), Vec::<String>::new(), "{}", folder.display());
-    }
-    let workspace = manifest(&root());
-    let dependencies = workspace["workspace"]["dependencies"].as_table().expect("a table");
-    for (name, _) in ALLOWED.iter().filter(|(name, _)| dependencies.contains_key(*name)) {
-        assert!(dependencies[*name].get("version").is_some(), "{name} has no version");
-    }
-    let bare: Table = toml::from_str("[package]\nname = \"x\"\nreadme = \"NONE.md\"").expect("a manifest");
-    assert_eq!(publishing_faults(&root(), &bare).len(), 6, "five fields and a file are missing");
-}
-
 #[test]
 fn forbidden_edges_are_seen() {
     let manifest: Table = r#"
