@@ -1,8 +1,6 @@
-//! The methods that the two-way interior point method is compared with.
+#![doc = include_str!("../README.md")]
 //!
-//! Each is a [`Method`]: it moves positions from a state without intersections toward a target. A method that
-//! differs from the two-way method in one stage is its loop with that stage replaced ([`Composed`]), so that
-//! a comparison shows the effect of that stage.
+//! ## Modules
 //!
 //! | module | holds | knows nothing of |
 //! |---|---|---|

@@ -1,9 +1,6 @@
-//! The judge: are states, and straight paths between states, free of intersections?
+#![doc = include_str!("../README.md")]
 //!
-//! It shares no code with the solver, so that a mistake there cannot hide itself here: it has its own broad
-//! phase (a tree over moving boxes), its own closest points, and a certificate of its own for paths (see
-//! [`Judge::check_path`]). States are decided by the exact predicates of `bowknot-geometry`, which the solver
-//! does not use.
+//! ## Calls, and what is judged
 //!
 //! ```text
 //! Judge::new(&Parts) -> Result<Judge, CheckError>                       loose meshes
@@ -54,8 +51,3 @@ pub use motion::MotionJudge;
 pub use report::{
     Intersection, Nearest, PairClass, PathHit, PathOptions, PathReport, StateOptions, StateReport,
 };
-
-/// The README's example is tested with the documentation.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,8 +1,4 @@
-//! Contact and edge-length constraints: values, Jacobians, colors.
-//!
-//! The crate turns pairs and their contact geometry into the rows that `bowknot-lcp` solves. It knows no
-//! solver.
-
+#![doc = include_str!("../README.md")]
 // Results have the same bits on every machine; tests may use the system's functions.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
@@ -31,8 +27,3 @@ pub use edges::{EdgeLimits, Stretch};
 pub use facing::{Facing, Feature};
 pub use friction::tangents;
 pub use params::{ContactForm, ContactParams, EdgeForm, EdgeReference, FrictionModel, STRETCH_LIMIT};
-
-/// The README's example is tested with the documentation.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -101,7 +101,7 @@ impl Body {
         Self::new(name, BodyShape::Obstacle { vertices })
     }
 
-    /// The same body with a gravity of its own [m/s^2].
+    /// This body with a gravity of its own [m/s^2].
     pub fn with_gravity(mut self, gravity: Vector) -> Self {
         self.gravity = Some(gravity);
         self

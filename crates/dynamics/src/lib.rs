@@ -1,9 +1,6 @@
-//! Implicit Euler dynamics of deformable bodies.
+#![doc = include_str!("../README.md")]
 //!
-//! The crate knows materials in physical units, lumped masses, cloth, solids, strands and particles, damping,
-//! wind, gravity and prescribed vertices. It computes **one Newton iteration** `x -> y` of the implicit Euler
-//! step at a time. It does not know how contact is resolved: a collision stage moves x towards y as far as it
-//! can and asks for the next y.
+//! ## A time step
 //!
 //! A time step minimizes the incremental potential
 //!
@@ -12,6 +9,8 @@
 //! ```
 //!
 //! over the free vertices, with V the elastic energy and D the dissipation ([`Dynamics`]).
+//!
+//! ## Modules
 //!
 //! | module | holds |
 //! |---|---|
@@ -67,8 +66,3 @@ pub use model::DynamicsModel;
 pub use observe::{ElasticEnergies, Energies};
 pub use params::{DynamicsParams, Environment, HessianFilter, NewtonParams, PreconditionerKind};
 pub use repulsion::{RepulsionSpring, SpringKind};
-
-/// The README's example is tested with the documentation.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

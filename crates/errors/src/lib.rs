@@ -1,5 +1,6 @@
-//! Errors that all crates share: [`ParamError`], a parameter out of its range, and [`Errors`], a list of
-//! errors that is itself an error.
+#![doc = include_str!("../README.md")]
+//!
+//! ## Parameters
 //!
 //! A struct of parameters implements [`Parameters::check`], which looks at every field;
 //! [`Parameters::validate`] is what users call. Nested structs are checked by [`Checks::within`], so that
@@ -13,8 +14,3 @@ mod errors;
 pub use checks::{Checks, ParamError, Parameters};
 pub use counts::counted;
 pub use errors::Errors;
-
-/// The README's example is tested with the documentation.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,19 +1,6 @@
-//! Geometry of simplices for collision handling.
+#![doc = include_str!("../README.md")]
 //!
-//! The crate knows points and simplices, closest points and distances of the pair kinds (vertex-vertex,
-//! vertex-edge, vertex-triangle, edge-edge, vertex-half-space), *certified* lower bounds of distances, exact
-//! intersection predicates, the topology of triangle meshes, strands and particles, and which bodies may
-//! collide. It does not know files, threads or time.
-//!
-//! ```
-//! use bowknot_geometry::{PairKind, Point, separation::separate};
-//!
-//! let vertex = Point::new(0.25, 0.25, 1e-3);
-//! let triangle = [Point::origin(), Point::new(1.0, 0.0, 0.0), Point::new(0.0, 1.0, 0.0)];
-//! let pair = separate(PairKind::VertexTriangle, &[vertex, triangle[0], triangle[1], triangle[2]]);
-//! assert_eq!(pair.weights, [1.0, 0.5, 0.25, 0.25]);
-//! assert!(pair.width <= 1e-3 && pair.width > 0.999e-3); // never above the true distance
-//! ```
+//! ## Names
 //!
 //! Function names follow one pattern: `module::pair_kind`, for example [`distance::vertex_triangle`].
 
@@ -35,10 +22,6 @@ pub mod tet_check;
 pub mod topology;
 mod union_find;
 mod vertex_range;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
 
 pub use bowknot_errors::Errors;
 /// The crate of the types [`Point`] and [`Vector`].

@@ -23,7 +23,7 @@ use crate::point::{Point, Vector};
 /// Bound of the rounding of a slab width, per largest coordinate difference; see the module.
 const WIDTH_ROUNDING: f64 = 10.0 * f64::EPSILON;
 
-/// The same for a pair that was moved to its first vertex: two more roundings of each difference, 2 u *
+/// Bound of the rounding of a slab width of a pair that was moved to its first vertex: two more roundings of each difference, 2 u *
 /// sqrt(3) m, before all others.
 const MOVED_WIDTH_ROUNDING: f64 = 16.0 * f64::EPSILON;
 

@@ -30,7 +30,7 @@ impl<'a> Bound<'a> {
         self.buffers[binding].borrow()
     }
 
-    /// The same, to be written.
+    /// The words of a buffer, to be written.
     pub fn write(&self, binding: usize) -> RefMut<'a, Vec<u32>> {
         self.buffers[binding].borrow_mut()
     }

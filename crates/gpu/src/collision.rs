@@ -95,7 +95,7 @@ pub struct Settings {
     pub polish_stretch: f64,
     /// Strength of the proximal term of edges: the part of their curvature that counts.
     pub edge_proximal: f64,
-    /// The same of contacts.
+    /// Strength of the proximal term of contacts: the part of their curvature that counts.
     pub contact_proximal: f64,
     /// Largest factor on the proximal term of a vertex, which grows while its displacements reverse.
     pub proximal_growth: f64,
@@ -214,17 +214,17 @@ pub struct StepReport {
     pub frozen: usize,
     /// Largest remaining distance of a vertex [m].
     pub remaining: f64,
-    /// The same of vertices that are not prescribed [m].
+    /// Largest remaining distance of a vertex that is not prescribed [m].
     pub free_remaining: f64,
-    /// The same of prescribed vertices [m].
+    /// Largest remaining distance of a prescribed vertex [m].
     pub lag: f64,
     /// Largest remaining distance of a vertex that no pair holds back [m].
     pub unhindered: f64,
-    /// The same of prescribed vertices alone [m].
+    /// Largest remaining distance of a prescribed vertex that no pair holds back [m].
     pub unhindered_lag: f64,
     /// Longest move of a vertex [m].
     pub largest_move: f64,
-    /// The same of vertices that are not prescribed [m].
+    /// Longest move of a vertex that is not prescribed [m].
     pub free_move: f64,
     /// Contact rows.
     pub contact_rows: usize,

@@ -33,7 +33,7 @@ pub struct Vertex {
     pub group: u32,
     /// Desired distance of the body's contacts.
     pub delta: f32,
-    /// The same of its contacts with half-spaces that have no thickness.
+    /// Desired distance of the body's contacts with half-spaces that have no thickness.
     pub half_space_delta: f32,
     /// Thickness of the body, a minimum separation that is guaranteed; below 0 if it has none.
     pub thickness: f32,
@@ -142,7 +142,7 @@ impl Candidate {
         self.kind_and_a >> Self::ELEMENT_BITS
     }
 
-    /// The same pair with sides of one kind in the order of their numbers: a search may find it either way.
+    /// This pair with sides of one kind in the order of their numbers: a search may find it either way.
     pub(crate) fn ordered(self) -> Self {
         let (kind, a) = (self.kind(), self.a());
         let is_symmetric = kind == Kind::VertexVertex as u32 || kind == Kind::EdgeEdge as u32;

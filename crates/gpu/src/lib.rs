@@ -1,4 +1,6 @@
-//! The two-way method on any GPU that wgpu reaches, with a CPU twin of every kernel.
+#![doc = include_str!("../README.md")]
+//!
+//! ## Modules
 //!
 //! | module | holds |
 //! |---|---|
@@ -59,8 +61,3 @@ pub use linear::ConjugateGradients;
 pub use model::{Constraints, Lengths};
 pub use recording::{BufferId, DispatchView, Phase, Recording};
 pub use two_way::{Device, GpuResolveError, resolve_on};
-
-/// The README's example is tested with the documentation.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -1,15 +1,12 @@
-//! Files in and out: meshes (OBJ, PLY; MSH, lists of tetrahedra and segments in only), NumPy archives and
-//! frame stacks (NPZ), what other programs play (PC2, USD, VTU), atomic writes.
+#![doc = include_str!("../README.md")]
 //!
-//! Everything in memory is in meters with z up; [`Import`] converts on the way in. Readers never panic and
-//! never allocate on the word of a header: a malformed file gives an [`IoError`] that names the file and the
-//! line, element or array. Elements are kept as they stand in the file, degenerate ones too; whether a
-//! triangle of zero area is an error or a warning depends on the body, which the scene knows and a file does
-//! not.
+//! ## Faulty elements
+//!
+//! Elements are kept as they stand in the file, degenerate ones too. Whether a triangle of zero area is an
+//! error or a warning depends on the body, which a scene knows and a file does not.
 //!
 //! The readers are our own because the crates at hand do not say where a file is wrong (`tobj`) or refuse
-//! numbers that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests. `mshio` is
-//! not kept up.
+//! numbers that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests.
 
 mod atomic;
 mod error;
@@ -53,8 +50,3 @@ pub use vtu::{write_pvd, write_vtu};
 
 #[cfg(all(test, feature = "npz"))]
 mod tests;
-
-/// The README's example is tested with the documentation.
-#[cfg(all(doctest, feature = "npz"))]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

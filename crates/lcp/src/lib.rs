@@ -1,17 +1,9 @@
-//! Linear complementarity problems over sparse rows, and their projected solvers.
+#![doc = include_str!("../README.md")]
 //!
-//! The problem: project node positions y_free (3-vectors with inverse weights w >= 0) onto linear
-//! inequalities over up to four nodes ([`Row`]), limits on distances ([`DistanceLimit`]), and friction bounds
-//! ([`FrictionRow`]). It is given as borrowed arrays ([`LcpProblem`]), and solved in place ([`LcpState`]):
+//! ## Units
 //!
-//! - [`sweep_serial`], [`solve_serial`]: projected Gauss-Seidel, one row after the other;
-//! - [`sweep_colored`], [`solve_colored`]: the same, color by color in parallel, to the same bits;
-//!   [`GaussSeidel`] keeps their scratch memory;
-//! - [`Jacobi`]: all rows at once, with split masses, for comparison and where there are no colors;
-//! - [`solve_exact`]: an active-set method on the dense Delassus matrix, the reference for small problems.
-//!
-//! The crate knows neither meshes nor contacts. Positions and row values share one unit, usually meters. With
-//! weights relative to their mean, multipliers have it too.
+//! Positions and row values share one unit, usually meters. With weights relative to their mean, multipliers
+//! have it too.
 
 // Results have the same bits on every machine; tests may use the system's functions.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -52,7 +44,3 @@ pub use rows::{DistanceLimit, FrictionRow, Row, prepare_friction, prepare_rows};
 pub use schedule::{ConstraintSet, Schedule};
 pub use state::LcpState;
 pub use vector::{TangentVector, Vector};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDocTests;

@@ -68,7 +68,7 @@ impl<'a> LcpProblem<'a> {
         Self::new(weights, ConstraintSet::serial(rows), ConstraintSet::default(), ConstraintSet::default())
     }
 
-    /// The same problem with other distance limits. Cost: one pass over their indices; nothing else is
+    /// This problem with other distance limits. Cost: one pass over their indices; nothing else is
     /// checked again. It serves where limits are added between sweeps.
     ///
     /// # Errors

@@ -31,7 +31,7 @@ impl LcpState<'_> {
         check("friction", self.friction.len(), problem.friction().rows.len())
     }
 
-    /// The same state with a shorter borrow.
+    /// This state with a shorter borrow.
     pub fn reborrow(&mut self) -> LcpState<'_> {
         LcpState {
             y: self.y,

@@ -36,7 +36,7 @@ impl Scale {
         if span > 0.0 { ((value - self.low) / span).clamp(0.0, 1.0) } else { 0.5 }
     }
 
-    /// The same scale with its ends moved outward to round numbers. A scale of length 0 is lengthened first.
+    /// This scale with its ends moved outward to round numbers. A scale of length 0 is lengthened first.
     pub fn rounded(&self) -> Self {
         let (mut low, mut high) = (self.low, self.high);
         if high - low <= 1e-9 * high.abs().max(low.abs()) {

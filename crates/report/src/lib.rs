@@ -1,5 +1,6 @@
-//! One self-contained HTML page of a run: it plays the frames beside plots of the statistics, from a file,
-//! without a network.
+#![doc = include_str!("../README.md")]
+//!
+//! ## Modules
 //!
 //! ```text
 //! frames.rs    where the frames of a run's folder are
@@ -30,8 +31,3 @@ mod write;
 pub use error::ReportError;
 pub use options::{ReportInfo, ReportOptions};
 pub use write::write_report;
-
-/// The README's example is tested with the documentation.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

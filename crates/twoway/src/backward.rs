@@ -289,7 +289,7 @@ impl<K: RowSolver> LcpBackward<K> {
         }
     }
 
-    /// The same for all vertices without a proximal weight, in the first step of a call.
+    /// Sets w and y' of all vertices, without a proximal weight, in the first step of a call.
     fn set_all_weights(&mut self, scene: &CollisionScene, state: &ResolveState) {
         let count = state.x.len();
         self.weights.resize(count, 0.0);

@@ -1,10 +1,10 @@
-//! The two-way interior point method: `resolve(x, y)` without intersections.
+#![doc = include_str!("../README.md")]
 //!
-//! Given an intersection-free state x and a target y from any dynamics, [`Resolver::resolve`] moves x toward
-//! y. Each two-way step finds the candidate pairs, those that could meet ([`Search`]), removes intersections
+//! ## Stages
+//!
+//! Each two-way step finds the candidate pairs, those that could meet ([`Search`]), removes intersections
 //! from the target ([`BackwardStep`]), and moves the vertices toward it on paths that are certified free of
-//! intersections ([`ForwardStep`]). Friction changes the target alone, so it does not affect that
-//! certificate. The stages are traits, and other methods implement them.
+//! intersections ([`ForwardStep`]). Friction changes the target alone, so it does not affect that certificate.
 
 // Results have the same bits on every machine; tests may use the system's functions.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -90,8 +90,3 @@ pub use statistics::{Skipped, StageSeconds, Statistics};
 pub use stop::{Residuals, StopParams, StopRule, StopTest, TravelLimits};
 pub use stretch::max_stretch;
 pub use waits::{Wait, WaitPair, WaitReason};
-
-/// The README's example is tested with the documentation.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeDoctests;

@@ -34,7 +34,7 @@ impl Parameters for LinearSystem {
 }
 
 impl LinearSystem {
-    /// The same with the one-line projection.
+    /// The linear system with the one-line projection, and defaults elsewhere.
     pub fn projected() -> Self {
         Self { projected: true, ..Self::default() }
     }

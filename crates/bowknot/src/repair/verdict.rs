@@ -32,7 +32,7 @@ pub struct Verdict {
     pub border_vertices: usize,
     /// Pairs that intersect.
     pub intersections: usize,
-    /// The same by parts, most first.
+    /// Pairs that intersect by the parts that they belong to, most first.
     pub by_parts: Vec<PartIntersections>,
     /// The first of them, in words.
     pub findings: Vec<String>,

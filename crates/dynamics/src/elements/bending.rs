@@ -100,7 +100,7 @@ pub(crate) fn for_each_stencil(triangles: &[[u32; 3]], rest: &[Vector], mut visi
 }
 
 impl Stencil {
-    /// The same stencil over distinct nodes, corners first.
+    /// The stencil over distinct nodes, corners first.
     pub fn merged(&self) -> Merged {
         let mut merged =
             Merged { nodes: Vec::new(), jumps: Default::default(), gram: self.gram, area: self.area };

@@ -86,7 +86,7 @@ fn first_axis(a: f64, d: f64, b: f64) -> [f64; 2] {
     if along >= across { [c, s] } else { [-s, c] }
 }
 
-/// The same of four matrices.
+/// The first axes of four matrices at once.
 #[inline(always)]
 fn first_axes(a: f64x4, d: f64x4, b: f64x4) -> [f64x4; 2] {
     let (zero, one, two) = (f64x4::splat(0.0), f64x4::splat(1.0), f64x4::splat(2.0));

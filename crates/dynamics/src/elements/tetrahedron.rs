@@ -50,7 +50,7 @@ impl Tetrahedron {
         })
     }
 
-    /// The same with a share of its volume.
+    /// The tetrahedron with a share of its volume.
     pub fn with_share(self, share: f64) -> Self {
         Self { volume: self.volume * share, ..self }
     }

@@ -117,7 +117,7 @@ impl WovenTriangle {
         if sum > 0.0 { [(c11 + j) / sum - 1.0, (c22 + j) / sum - 1.0, c12 / sum] } else { [-1.0, -1.0, 0.0] }
     }
 
-    /// The same from the singular values and `frame` = V: U = V diag(s) V^T.
+    /// The strain U - I from the singular values and `frame` = V: U = V diag(s) V^T.
     #[inline]
     fn strain_in(frame: &Matrix2<f64>, [s1, s2]: [f64; 2]) -> [f64; 3] {
         let strain = frame * Matrix2::new(s1 - 1.0, 0.0, 0.0, s2 - 1.0) * frame.transpose();

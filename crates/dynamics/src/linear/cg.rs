@@ -45,7 +45,7 @@ impl<T: Real> Krylov<T> {
         self.preconditioner.apply(levels, (parts, &all), &self.r, &mut self.z)
     }
 
-    /// The same without the norm.
+    /// Starts from x = 0 with the residual `b` times `factor`, without the norm.
     pub fn load(&mut self, b: &[Vector], factor: f64) {
         for vector in [&mut self.x, &mut self.z, &mut self.p, &mut self.q] {
             vector.resize(b.len(), Lane::default());

@@ -123,7 +123,7 @@ impl<T: Real> Lane<T> {
         Vector::new(x.to_f64(), y.to_f64(), z.to_f64())
     }
 
-    /// The same with a fourth number of zero.
+    /// This lane with a fourth number of zero.
     #[inline(always)]
     pub fn without_fourth(self) -> Self {
         Self(T::first_three(self.0))

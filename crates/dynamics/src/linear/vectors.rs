@@ -13,7 +13,7 @@ pub(crate) fn dot(a: &[Vector], b: &[Vector]) -> f64 {
     partial.iter().sum()
 }
 
-/// The same over one chunk, serially.
+/// sum a_i . b_i over one chunk, serially.
 #[inline]
 pub(crate) fn chunk_dot(a: &[Vector], b: &[Vector]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()

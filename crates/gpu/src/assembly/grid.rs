@@ -36,7 +36,7 @@ impl StateGrid {
         Self { center, quantum }
     }
 
-    /// The same, so coarse that a box of this side fits as well [m].
+    /// A grid around the positions, so coarse that a box of this side fits as well [m].
     pub fn with_room<'a>(positions: impl Iterator<Item = &'a Vector> + Clone, side: f64) -> Self {
         let mut grid = Self::around(positions);
         while grid.quantum * REACH < side {

@@ -11,7 +11,7 @@ pub struct Stop {
     /// No vertex is as far from where the step wanted to go [m]; no prescribed vertex is held back otherwise
     /// than by pairs.
     pub distance: f64,
-    /// The same of vertices that no pair holds back [m].
+    /// No vertex that no pair holds back is as far from where the step wanted to go [m].
     pub unhindered: f64,
     /// No body has as large a net residual [m].
     pub net_residual: f64,

@@ -160,7 +160,7 @@ impl Section<'_> {
         self.fields(base, nested)
     }
 
-    /// The same over defaults.
+    /// Reads all keys as a `T`, over its defaults, except for `nested` ones: unknown keys are problems.
     pub fn structure<T>(&self, nested: &[&str]) -> T
     where
         T: Serialize + DeserializeOwned + Default + Clone,

@@ -127,7 +127,7 @@ impl NearPairs {
         inherit(scene, state, &self.old, &self.matches, statistics);
     }
 
-    /// The same for a caller who knows the pairs: all that are within contact range at x are among `near`.
+    /// Selects the pairs for a caller who knows them: all that are within contact range at x are among `near`.
     pub fn select_among(
         &mut self,
         scene: &CollisionScene,

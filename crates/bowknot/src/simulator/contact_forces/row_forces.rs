@@ -54,7 +54,7 @@ impl RowForces {
         self.multipliers.extend(pressing(resolver, solved).map(|(pair, _)| kept(pair)));
     }
 
-    /// The same as forces, at the end of a time step.
+    /// Forces of the pairs that press at the end of a time step.
     pub fn forces(&self, resolver: &Resolver, solved: &[bool]) -> Vec<ContactForce> {
         let force = |(pair, normal): (PairMultipliers, Vector)| {
             let force = (normal * pair.normal + pair.friction) * self.scale;

@@ -236,7 +236,7 @@ pub struct Trial {
     pub largest_step: f64,
     /// Largest distance of a free node from the iterate [m].
     pub from_iterate: f64,
-    /// The same from the iterate that the target began with [m].
+    /// Largest distance of a free node from the iterate that the target began with [m].
     pub from_start: f64,
     /// Positions of the watched nodes.
     pub watched: Watched,

@@ -77,7 +77,7 @@ pub trait Bodies: Send {
     /// Largest distance of a free node at the trial from the iterate [m].
     fn distance_from_iterate(&self) -> f64;
 
-    /// The same from where the target began [m].
+    /// Largest distance of a free node at the trial from where the target began [m].
     fn distance_from_start(&self) -> f64;
 
     /// Makes the trial the iterate.

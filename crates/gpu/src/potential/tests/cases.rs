@@ -21,7 +21,7 @@ pub fn cases() -> Vec<Case> {
     of_every_kind(&|curvature| sheet(9, curvature), &|| block(12), &|radius| locks(30, radius), 0.1)
 }
 
-/// The same, each of one element; bending around a triangle needs a neighbor.
+/// Bodies of every kind, each of one element; bending around a triangle needs a neighbor.
 pub fn single_elements() -> Vec<Case> {
     let triangle = |curvature: f64| {
         let (points, triangles) = sheet(1, curvature);
