@@ -1,5 +1,7 @@
 //! How a command ends: exit codes and error messages.
 
+use crate::hints::Hint;
+use bowknot::SimulationError;
 use bowknot::check::CheckError;
 use bowknot::io::IoError;
 use std::fmt::Display;
@@ -39,6 +41,16 @@ impl Failure {
     /// A fault of the program itself: exit code 4.
     pub fn internal(message: impl Display) -> Self {
         Self { code: 4, message: message.to_string() }
+    }
+
+    /// A simulation that could not begin or go on: exit code 4, 3 or 2.
+    pub fn simulation(error: &SimulationError) -> Self {
+        let message = error.with_hint();
+        match error {
+            SimulationError::Internal { .. } => Self::internal(message),
+            SimulationError::Backend { .. } => Self::backend(message),
+            _ => Self::input(message),
+        }
     }
 
     /// A file that cannot be checked.

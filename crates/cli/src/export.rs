@@ -2,6 +2,7 @@
 
 use crate::args::ExportOptions;
 use crate::exit::{Exit, Failure};
+use crate::hints::Hint;
 use crate::output;
 use crate::progress::Bar;
 use bowknot::run::Rate;
@@ -30,7 +31,7 @@ pub fn export(options: &ExportOptions) -> Result<Exit, Failure> {
     if let Some(bar) = bar {
         bar.finish();
     }
-    let exported = result?;
+    let exported = result.map_err(|error| Failure::input(error.with_hint()))?;
     let names: Vec<&str> = options.format.iter().map(|format| format.name()).collect();
     output::print(&format!(
         "exported {} of {} as {} to {}",

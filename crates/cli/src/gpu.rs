@@ -53,7 +53,7 @@ pub fn of_run(options: &RunOptions, scene: &Scene, folder: &Path) -> Result<Back
         (Some(Backend::Auto), None) => {
             if !options.resume {
                 // Before anything is measured for it.
-                bowknot::run::refuse_run(folder).map_err(Failure::input)?;
+                bowknot::run::refuse_run(folder).map_err(|error| Failure::simulation(&error))?;
             }
             let (place, reason) = device::choose(
                 scene,

@@ -14,6 +14,7 @@ mod export;
 mod failure_dump;
 mod fault;
 mod gpu;
+mod hints;
 mod info;
 mod interrupt;
 mod near_starts;

@@ -2,6 +2,7 @@
 
 use crate::args::ReportOptions;
 use crate::exit::{Exit, Failure};
+use crate::hints::Hint;
 use crate::output;
 use crate::progress::Bar;
 use bowknot::report::{ReportInfo, write_report};
@@ -24,7 +25,7 @@ pub fn report(options: &ReportOptions) -> Result<Exit, Failure> {
     if let Some(bar) = bar {
         bar.finish();
     }
-    let info = result.map_err(Failure::input)?;
+    let info = result.map_err(|error| Failure::input(error.with_hint()))?;
     output::print(&to_text(&info))?;
     Ok(Exit::Success)
 }

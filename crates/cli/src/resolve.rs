@@ -3,7 +3,7 @@
 use crate::args::ResolveOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
-use crate::{failure_dump, gpu, output, setup, sizes};
+use crate::{failure_dump, gpu, hints, output, setup, sizes};
 use bowknot::check::{CheckError, Judge, MotionJudge, PathOptions, StateOptions};
 use bowknot::recording::{States, write_result};
 use bowknot::run::SmallestState;
@@ -163,7 +163,9 @@ fn attempt(
     let cpu = bowknot::simulator::cpu_seconds();
     let failure = |error: BackendError| match error {
         BackendError::Refused(error) => bad_input(error.to_string()),
-        BackendError::Failed(error) => Failure::backend(error),
+        BackendError::Failed(error) => {
+            Failure::backend(format!("{error}\noptions: {}", hints::of_backend(error.as_ref())))
+        }
     };
     let mut backend = gpu::of_problem(&options.machine)?;
     let statistics = backend

@@ -4,6 +4,7 @@ use crate::args::RunOptions;
 use crate::exit::{Exit, Failure};
 #[cfg(test)]
 use crate::fault;
+use crate::hints::Hint;
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
 use crate::{bare_mesh, failure_dump, gpu, near_starts, output, setup};
@@ -146,16 +147,12 @@ fn open(options: &RunOptions) -> Result<Scene, Failure> {
         let message = "--up applies to meshes; in a scene file, `up` is a key of each body and obstacle";
         return Err(Failure::input(message));
     }
-    Scene::open(&options.scene, options.scale, &sets).map_err(Failure::input)
+    Scene::open(&options.scene, options.scale, &sets).map_err(|error| Failure::input(error.with_hint()))
 }
 
 /// The failure of a run. If the start intersects, writes the dump that `--dump` asks for.
 fn run_failure(scene: &Scene, error: SimulationError, dump: Option<&Path>) -> Failure {
-    let failure = match error {
-        SimulationError::Internal { .. } => Failure::internal(&error),
-        SimulationError::Backend { .. } => Failure::backend(&error),
-        _ => Failure::input(&error),
-    };
+    let failure = Failure::simulation(&error);
     let (SimulationError::StartIntersects { .. }, Some(path)) = (&error, dump) else { return failure };
     match write_dump(scene, path) {
         Ok(triangles) => {

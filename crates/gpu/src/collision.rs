@@ -67,7 +67,7 @@ pub enum CollisionError {
         vertices: usize,
     },
     /// A position lies outside of the grid.
-    #[error("vertex {vertex} has left the grid of the device: use --backend cpu")]
+    #[error("vertex {vertex} has left the grid of the device: use the CPU")]
     OutsideGrid {
         /// The vertex.
         vertex: usize,

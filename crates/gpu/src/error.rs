@@ -2,9 +2,6 @@
 
 use std::fmt;
 
-/// How to do without the device, in words: an engine does not know what it computes.
-const ON_CPU: &str = "the CPU (--backend cpu, or --dynamics-backend cpu for the dynamics alone)";
-
 /// An error of the device or of the driver.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -35,7 +32,7 @@ pub enum GpuError {
     },
     /// A buffer is larger than what the device binds.
     #[error(
-        "{what} takes {bytes} bytes, but {adapter} binds {most} at most: use a smaller scene, another device or {ON_CPU}"
+        "{what} takes {bytes} bytes, but {adapter} binds {most} at most: use a smaller scene, another device or the CPU"
     )]
     TooLarge {
         /// The name of the adapter.
@@ -49,7 +46,7 @@ pub enum GpuError {
     },
     /// The device has too little memory.
     #[error(
-        "{adapter} has no memory for {what}, {bytes} bytes: use a smaller scene, a device with more memory or {ON_CPU}"
+        "{adapter} has no memory for {what}, {bytes} bytes: use a smaller scene, a device with more memory or the CPU"
     )]
     OutOfMemory {
         /// The name of the adapter.
@@ -61,8 +58,7 @@ pub enum GpuError {
     },
     /// The device was lost: it was reset or removed, or a watchdog ended its work.
     #[error(
-        "{adapter} was lost ({reason}). The last accepted state is whole: run again with --resume, on this device or on \
-         {ON_CPU}"
+        "{adapter} was lost ({reason}). The last accepted state is whole: go on from it, on this device or on the CPU"
     )]
     Lost {
         /// The name of the adapter.

@@ -44,7 +44,7 @@ pub enum GridError {
     /// The scene is too large for the smallest length that must be resolved.
     #[error(
         "a scene of {extent:.3e} m has a grid of {quantum:.3e} m, which is too coarse for gaps of {smallest:.3e} m: \
-         use --backend cpu, a larger minimum separation, or remove what is far away"
+         use the CPU or a larger minimum separation, or remove what is far away"
     )]
     TooCoarse {
         /// Size of the scene [m].

@@ -13,8 +13,8 @@ pub struct Lengths<'a> {
     pub margins: &'a [f64],
     /// Desired distance of the contacts of each vertex with others like it.
     pub deltas: &'a [f64],
-    /// Desired distance of the contacts of each vertex with half-spaces that have no thickness. May be empty: as with
-    /// others like it.
+    /// Desired distance of the contacts of each vertex with half-spaces that have no thickness. May be empty: as
+    /// with others like it.
     pub half_space_deltas: &'a [f64],
     /// Thickness of the body of each vertex, a guaranteed minimum separation; none where it is not a number.
     /// May be empty: no body has any.

@@ -129,10 +129,10 @@ pub(super) fn pack(
             return Ok(Pack { bodies, elements, frames: packed, shown, stride, error });
         }
         if options.stride.is_some() {
-            return Err(too_large(stride, "raise --max-megabytes, or the stride"));
+            return Err(too_large(stride, "raise the largest size of the page, or the stride"));
         }
         if shown.len() <= 2 {
-            return Err(too_large(stride, "raise --max-megabytes"));
+            return Err(too_large(stride, "raise the largest size of the page"));
         }
         // What was packed within the budget tells how many frames it takes; frames further apart are larger.
         let taken = (packed.len() - 1).max(1) as f64;

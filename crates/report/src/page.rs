@@ -113,7 +113,7 @@ fn left_out(frames: &FrameSource, facts: &Facts, columns: &Columns, pack: &Pack)
     let (shown, found) = (pack.shown.len(), frames.len());
     if shown < found {
         left_out.push(format!(
-            "{} of {}: one in {} is shown, and the last; --stride and --max-megabytes change that",
+            "{} of {}: one in {} is shown, and the last; the stride and the largest size of the page change that",
             found - shown,
             counted(found, "frame", "frames"),
             pack.stride

@@ -394,7 +394,7 @@ fn what_cannot_be_shown_is_refused() {
         report(folder.path(), &options).map(|_| ()).expect_err("a refusal").to_string()
     };
     assert!(refuse(ReportOptions { stride: Some(0), ..ReportOptions::default() }).contains("at least 1"));
-    assert!(refuse(ReportOptions { stride: None, max_bytes: 1000 }).contains("raise --max-megabytes"));
+    assert!(refuse(ReportOptions { stride: None, max_bytes: 1000 }).contains("raise the largest size"));
     assert!(refuse(ReportOptions { stride: Some(2), max_bytes: 1000 }).contains("or the stride"));
     let path = folder.path().join("frames/000001.ply");
     write_ply(&path, &MeshView { positions: &positions(0)[..5], ..MeshView::default() }).expect("a frame");

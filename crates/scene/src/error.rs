@@ -42,7 +42,7 @@ pub enum SceneError {
         /// The file.
         file: PathBuf,
     },
-    /// `--scale` out of its range.
+    /// A scale of a built-in scene out of its range.
     #[error("scale {scale} must be finite, at least {min} and at most {max}")]
     Scale {
         /// The scale given.
@@ -52,8 +52,8 @@ pub enum SceneError {
         /// Largest scale allowed.
         max: f64,
     },
-    /// `--scale` for a scene file.
-    #[error("{}: --scale applies to built-in scenes; a file states its own resolution", file.display())]
+    /// A scale for a scene file.
+    #[error("{}: a scale applies to built-in scenes; a file states its own resolution", file.display())]
     ScaleOfFile {
         /// The scene file.
         file: PathBuf,
@@ -154,7 +154,7 @@ fn mesh_hint(problems: &[MeshProblem]) -> &'static str {
         |p: &MeshProblem| matches!(p, MeshProblem::ZeroArea { .. } | MeshProblem::RepeatedTriangle { .. });
     if problems.iter().any(degenerate) {
         ". The triangles of a deformable body need an area and must differ: \
-         `bowknot repair MESH --out FILE` drops these, `bowknot info MESH` lists them"
+         the command `bowknot repair` drops these, `bowknot info` lists them"
     } else {
         ""
     }

@@ -9,19 +9,19 @@ use std::path::PathBuf;
 pub enum Origin {
     /// A line, from 1, of a scene file.
     File(PathBuf, Option<usize>),
-    /// An option `--set`.
+    /// An assignment `KEY.PATH=VALUE` ([`crate::Scene::load`]).
     Set,
     /// A scene made in code.
     Code,
 }
 
-/// The prefix of a message: "scene.toml:3: ", "--set: ", or nothing.
+/// The prefix of a message: "scene.toml:3: ", "assignment: ", or nothing.
 impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(file, Some(line)) => write!(f, "{}:{line}: ", file.display()),
             Self::File(file, None) => write!(f, "{}: ", file.display()),
-            Self::Set => write!(f, "--set: "),
+            Self::Set => write!(f, "assignment: "),
             Self::Code => Ok(()),
         }
     }

@@ -1,4 +1,4 @@
-//! Where each value of a scene description came from: the file's lines and the `--set` options.
+//! Where each value of a scene description came from: the file's lines and the assignments.
 
 use crate::error::{SceneError, SceneProblem, nearest};
 use crate::origin::{Origin, Origins};
@@ -71,7 +71,7 @@ impl Source {
         let fault =
             |key: &str, message: String| SceneProblem { origin: Origin::Set, key: key.to_owned(), message };
         let Some((path, text)) = assignment.split_once('=') else {
-            return Err(fault(assignment, "an option --set has the form KEY.PATH=VALUE".to_owned()));
+            return Err(fault(assignment, "an assignment has the form KEY.PATH=VALUE".to_owned()));
         };
         let (path, text) = (path.trim(), text.trim());
         let parts: Vec<&str> = path.split('.').map(str::trim).collect();

@@ -175,7 +175,9 @@ fn polish_sweeps_follow_sweeps_unless_they_are_given() {
     assert_eq!(polish_sweeps(&["solver.backward.sweeps=100"]), Ok(100));
     assert_eq!(polish_sweeps(&["solver.backward.sweeps=10"]), Ok(64));
     let error = polish_sweeps(&["solver.backward.sweeps=100", "solver.backward.polish_sweeps=64"]);
-    assert!(error.is_err_and(|error| error.starts_with("--set: solver.backward.polish_sweeps: 64 must be")));
+    assert!(
+        error.is_err_and(|error| error.starts_with("assignment: solver.backward.polish_sweeps: 64 must be"))
+    );
 }
 
 #[test]
@@ -185,9 +187,9 @@ fn the_keys_of_a_stopping_rule_stand_beside_it() {
     let rule = bowknot_twoway::StopRule::Travel { net_residual: 0.1, residual: None };
     assert_eq!(params.solver.stop.rule, rule);
     let error = twoway_params(&["solver.stop.net_residual=nan"]).expect_err("NaN").to_string();
-    assert!(error.starts_with("--set: solver.stop.net_residual: NaN must be"), "{error}");
+    assert!(error.starts_with("assignment: solver.stop.net_residual: NaN must be"), "{error}");
     let error = twoway_params(&["solver.stop.imbalance=1"]).expect_err("unknown").to_string();
-    assert!(error.starts_with("--set: solver.stop.imbalance: unknown key"), "{error}");
+    assert!(error.starts_with("assignment: solver.stop.imbalance: unknown key"), "{error}");
 }
 
 #[test]
@@ -219,7 +221,7 @@ fn a_byte_order_mark_hides_no_line() {
 fn sets_override_before_anything_is_interpreted() {
     let set = |sets: &[&str]| Scene::builtin("drape", 0.1).expect("a scene").with_sets(sets);
     let scene = set(&["simulation.dt=1/50"]).expect_err("not a number").to_string();
-    assert_eq!(scene, "--set: simulation.dt: must be a number, not the string \"1/50\"");
+    assert_eq!(scene, "assignment: simulation.dt: must be a number, not the string \"1/50\"");
     let scene =
         set(&["simulation.dt = 0.05", "solver.stop.max_steps=7", "contact.form=volume"]).expect("sets");
     assert_eq!((scene.simulation.dt, scene.solver.stop.max_steps), (0.05, Some(7)));
@@ -232,10 +234,10 @@ fn sets_override_before_anything_is_interpreted() {
     assert_eq!(scene.bodies[0].material, Material::Cloth(ClothMaterial::silk()));
 
     for (sets, expected) in [
-        ("contact.delt=1", "--set: contact.delt: unknown key; did you mean contact.delta?"),
-        ("contact", "--set: contact: an option --set has the form KEY.PATH=VALUE"),
-        ("body.shet.scale=2", "--set: body: has no entry shet; it has 1 entry"),
-        ("simulation.dt=nan", "--set: simulation.dt: NaN must be"),
+        ("contact.delt=1", "assignment: contact.delt: unknown key; did you mean contact.delta?"),
+        ("contact", "assignment: contact: an assignment has the form KEY.PATH=VALUE"),
+        ("body.shet.scale=2", "assignment: body: has no entry shet; it has 1 entry"),
+        ("simulation.dt=nan", "assignment: simulation.dt: NaN must be"),
     ] {
         let error = set(&[sets]).expect_err(sets).to_string();
         assert!(error.starts_with(expected), "{sets}: {error}");
@@ -261,7 +263,7 @@ fn a_preset_changes_defaults_and_keeps_what_was_stated() {
         twoway_params(&["solver.forward.damping=2"])
             .expect_err("range")
             .to_string()
-            .starts_with("--set: solver.forward.damping")
+            .starts_with("assignment: solver.forward.damping")
     );
 }
 

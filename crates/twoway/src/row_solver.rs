@@ -48,8 +48,8 @@ pub trait RowSolver: Send {
         false
     }
 
-    /// Improves the multipliers as [`Self::solve`] does, of the contact rows and of those edges only that act or
-    /// could come to act. The cost of a step is then that of what acts.
+    /// Improves the multipliers as [`Self::solve`] does, of the contact rows and of those edges only that act
+    /// or could come to act. The cost of a step is then that of what acts.
     ///
     /// # Errors
     /// As [`Self::solve`].

@@ -77,6 +77,35 @@ pub struct Exported {
     pub vertices: usize,
 }
 
+/// Why frames were not exported.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// A file that cannot be read or written, frames whose elements differ, or a rate that takes none of them.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// Nothing says the time from frame to frame.
+    #[error("{}: no scene.toml in it that says the time from frame to frame: give the time step", path.display())]
+    NoTimeStep {
+        /// The folder or archive that is read.
+        path: PathBuf,
+    },
+    /// Only some frames are taken, and would be written into the folder that they are read from.
+    #[error("{}: some of its frames, numbered anew, would mix with its own: name another output folder", path.display())]
+    Mixes {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Frames would be written over those that are read.
+    #[error("{}: its frames are {format:?} files already: name another output folder", path.display())]
+    Overwrites {
+        /// The folder.
+        path: PathBuf,
+        /// The format of its frames.
+        format: Format,
+    },
+}
+
 /// Writes the frames of `source` in other formats: of a run's folder, of a folder of PLY or OBJ files that
 /// differ in positions only, or of an NPZ archive. `progress` hears the frames done and their number.
 ///
@@ -91,15 +120,16 @@ pub fn export(
     source: &Path,
     options: &ExportOptions,
     progress: &mut dyn FnMut(usize, usize),
-) -> Result<Exported, IoError> {
+) -> Result<Exported, ExportError> {
+    let path = || source.to_owned();
     let fault = |message: String| IoError::content(source, Place::File, message);
     let scene_path = source.join("scene.toml");
     let no_sets: [&str; 0] = [];
     let scene = if scene_path.exists() { Scene::load(&scene_path, &no_sets).ok() } else { None };
-    let time_step =
-        options.time_step.or(scene.as_ref().map(|scene| scene.simulation.dt)).ok_or_else(|| {
-            fault("no scene.toml in it that says the time from frame to frame: give it with --dt".to_owned())
-        })?;
+    let time_step = options
+        .time_step
+        .or(scene.as_ref().map(|scene| scene.simulation.dt))
+        .ok_or_else(|| ExportError::NoTimeStep { path: path() })?;
     let stride = options.rate.stride(time_step).map_err(fault)?;
     let frames = open(source)?;
     let format = match frames.ending().as_str() {
@@ -108,13 +138,10 @@ pub fn export(
         _ => Format::Npz,
     };
     if stride > 1 && same_folder(&options.out, source) {
-        let message =
-            "some of its frames, numbered anew, would mix with its own: name another folder with --out";
-        return Err(fault(message.to_owned()));
+        return Err(ExportError::Mixes { path: path() });
     }
     if options.formats.contains(&format) && same_folder(&options.out, source) {
-        let message = format!("its frames are {format:?} files already: name another folder with --out");
-        return Err(fault(message));
+        return Err(ExportError::Overwrites { path: path(), format });
     }
 
     let first = frames.read(0)?;

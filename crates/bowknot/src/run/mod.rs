@@ -17,7 +17,7 @@ mod writer;
 
 pub use backends::{BackendRecord, Backends};
 pub use checker::Checker;
-pub use export::{ExportOptions, Exported, Rate, export};
+pub use export::{ExportError, ExportOptions, Exported, Rate, export};
 pub use progress::{Progress, WithinStep};
 pub use summary::{
     EnergyNumbers, HeldApartStep, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary,

@@ -68,9 +68,8 @@ pub struct RunWriter {
     _lock: Lock,
 }
 
-/// Says where a run would be.
-const NO_RUN: &str =
-    "it holds no run; --out names the folder of a run, by default out/ and the name of its scene";
+/// Why the run of a folder cannot go on.
+const NO_RUN: &str = "it holds no run";
 
 /// Warns of formats that the run wrote so far and that are not continued.
 fn warn_of_left_formats(text: &str, scene: &Scene) {
@@ -85,8 +84,8 @@ fn warn_of_left_formats(text: &str, scene: &Scene) {
     if !left.is_empty() {
         let left = left.join(", ");
         tracing::warn!(
-            "the run wrote {left} as well, which this resumption does not continue: repeat --format, or use \
-             `bowknot export`"
+            "the run wrote {left} as well, which this resumption does not continue: add it to \
+             `output.formats`, or export the frames afterwards"
         );
     }
 }
@@ -150,7 +149,7 @@ impl RunWriter {
         warn_of_left_formats(&text, scene);
         let mut saved = Saved::new(folder);
         let checkpoint = saved.latest().map_err(|error| {
-            fault(format!("{error}; without the folder checkpoint, --resume computes the run from its start"))
+            fault(format!("{error}; without the folder checkpoint, the run is computed from its start"))
         })?;
         // A run that ended before its first checkpoint goes on from the start.
         if let Some(checkpoint) = checkpoint {

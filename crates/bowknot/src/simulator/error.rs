@@ -75,7 +75,7 @@ pub enum SimulationError {
     Io(#[from] IoError),
     /// The output folder holds a run already.
     #[error(
-        "{} already holds a run: continue it with --resume, choose another folder with --out, or remove it",
+        "{} already holds a run: resume it, choose another folder, or remove it",
         path.display()
     )]
     RunExists {
@@ -84,7 +84,7 @@ pub enum SimulationError {
     },
     /// Another run writes to the output folder.
     #[error(
-        "{} is in use by another run{}: wait for it, end it, or choose another folder with --out",
+        "{} is in use by another run{}: wait for it, end it, or choose another folder",
         path.display(), process_words(.process)
     )]
     RunInUse {
@@ -95,9 +95,8 @@ pub enum SimulationError {
     },
     /// The program itself failed within a run.
     #[error(
-        "time step {step}: internal error: {message}\nThis is a fault of the program, please report it. What \
-         was written \
-         so far is whole; --resume goes on from the last checkpoint."
+        "time step {step}: internal error: {message}\nThis is a fault of the program, please report it. What was \
+         written so far is whole; if the run is resumed, it goes on from the last checkpoint."
     )]
     Internal {
         /// The time step, from 1; 0 before the first.

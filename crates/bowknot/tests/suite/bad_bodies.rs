@@ -234,7 +234,7 @@ fn overlapping_and_flat_tetrahedra_are_listed() {
     assert_eq!(
         message.expect_err("refused"),
         "scene.toml:4: body it: of 3 tetrahedra, 1 flat: 2; 1 on the same side of a face as another: 1; \
-         `bowknot repair MESH --out FILE.msh` mends or drops them"
+         the command `bowknot repair` mends or drops them"
     );
     let world = with_mesh("solid", "mesh.msh", &msh(&[[1, 3, 2, 4]])).expect("a world");
     assert!(world.warnings[0].contains("1 of 1 tetrahedron had their vertices in the opposite order"));

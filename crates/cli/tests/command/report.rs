@@ -29,7 +29,7 @@ fn what_has_no_page() {
     place.run("report . --stride 0").refused(2, &["--stride", "at least 1"]);
     place.run("report . --max-megabytes=-1").refused(2, &["--max-megabytes"]);
     place.run(&format!("{SMALL} --out run")).ok();
-    place.run("report run --max-megabytes 0.1").refused(2, &["raise --max-megabytes"]);
+    place.run("report run --max-megabytes 0.1").refused(2, &["raise the largest size", "--max-megabytes"]);
     place.run("report run --out none/page.html").refused(2, &["none/page.html"]);
 }
 

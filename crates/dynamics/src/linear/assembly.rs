@@ -14,8 +14,8 @@ pub struct ElementModel {
     pub starts: Vec<u32>,
     /// See [`Self::starts`].
     pub columns: Vec<u32>,
-    /// Row i joins node i with the nodes `scalar_columns[scalar_starts[i]..scalar_starts[i + 1]]`, ascending, which
-    /// flat bending alone joins with it.
+    /// Row i joins node i with the nodes `scalar_columns[scalar_starts[i]..scalar_starts[i + 1]]`, ascending,
+    /// which flat bending alone joins with it.
     pub scalar_starts: Vec<u32>,
     /// See [`Self::scalar_starts`].
     pub scalar_columns: Vec<u32>,

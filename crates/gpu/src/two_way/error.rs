@@ -10,7 +10,7 @@ use bowknot_twoway::check::{CheckError, Intersection};
 #[non_exhaustive]
 pub enum GpuResolveError {
     /// A setting that the device does not have.
-    #[error("{what} is not available on a GPU: use --backend cpu{}", remedy(.instead))]
+    #[error("{what} is not available on a GPU: use the CPU{}", remedy(.instead))]
     Unsupported {
         /// The key and its value.
         what: String,
@@ -24,14 +24,14 @@ pub enum GpuResolveError {
     #[error(transparent)]
     Collision(#[from] CollisionError),
     /// A device that has failed before.
-    #[error("the device has failed before: use --backend cpu")]
+    #[error("the device has failed before: use the CPU")]
     NoEngine,
     /// The start cannot be judged.
     #[error(transparent)]
     Check(#[from] CheckError),
     /// Gaps at the start are too small for the grid of the device.
     #[error(
-        "at the start a gap is smaller than two steps of the grid of the device, of {quantum:e} m: use --backend cpu"
+        "at the start a gap is smaller than two steps of the grid of the device, of {quantum:e} m: use the CPU"
     )]
     TooTight {
         /// The distance of neighboring points of the grid [m].
@@ -40,7 +40,7 @@ pub enum GpuResolveError {
     /// The device computed a state that intersects: its driver does not compute what it should.
     #[error(
         "{} in the state that the device computed, which was thrown away: {first}. Its driver does not compute what it \
-         should. Use --backend cpu, and report this with the output of `bowknot info --gpus`",
+         should. Use the CPU, and report this with the names of the device and its driver",
         counted(*count, "pair intersects", "pairs intersect")
     )]
     Intersects {

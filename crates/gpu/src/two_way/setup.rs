@@ -100,7 +100,7 @@ pub fn collision<E: Engine>(
 
 /// Refuses what the kernels do not have.
 pub fn refuse_unsupported(scene: &CollisionScene) -> Result<(), GpuResolveError> {
-    const FAST: Option<&str> = Some("--preset fast");
+    const FAST: Option<&str> = Some("the preset `fast`");
     let params = scene.params();
     let (contact, solver) = (&params.contact, &params.solver);
     let filter = scene.friction_model() == FrictionModel::Filter;

@@ -240,7 +240,7 @@ impl Part {
         let of_all = |count: usize| counted(count, "tetrahedron", "tetrahedra");
         if !faults.is_empty() {
             return Err(format!(
-                "of {}, {}; `bowknot repair MESH --out FILE.msh` mends or drops them",
+                "of {}, {}; the command `bowknot repair` mends or drops them",
                 of_all(self.tets.len()),
                 faults.join("; ")
             ));

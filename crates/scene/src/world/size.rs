@@ -47,8 +47,8 @@ impl fmt::Display for BodySize {
 
 /// What speaks for a wrong unit, in words.
 pub(super) fn warnings(sizes: &[BodySize]) -> Vec<String> {
-    let remedy = "lengths are in m; `scale` of a body, or --scale of `run MESH`, converts a mesh: 0.01 for \
-                  centimeters, 0.001 for millimeters";
+    let remedy = "lengths are in m; `scale` of a body converts a mesh: 0.01 for centimeters, 0.001 for \
+                  millimeters";
     let mut warnings = Vec::new();
     for size in sizes.iter().filter(|size| size.vertices > 1) {
         if size.largest() > LARGE {

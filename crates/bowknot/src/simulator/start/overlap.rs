@@ -63,7 +63,7 @@ fn of_pair(world: &World, body: u32, other: Other) -> Option<String> {
     let name = world.name_of(body);
     match other {
         Other::Itself => Some(format!(
-            "{name} intersects itself: `bowknot repair MESH --out FILE` welds seams whose panels only lie \
+            "{name} intersects itself: the command `bowknot repair` welds seams whose panels only lie \
              together; anything else must be mended in the mesh"
         )),
         Other::HalfSpace(plane) => {
