@@ -22,6 +22,7 @@ impl Hint for SimulationError {
     fn hint(&self) -> Option<&'static str> {
         match self {
             Self::Scene(error) => error.hint(),
+            Self::StartIntersects { .. } => Some("--dump FILE.ply writes the offending triangles as a mesh"),
             Self::RunExists { .. } => Some("--resume, or --out DIR for another folder"),
             Self::RunInUse { .. } => Some("--out DIR for another folder"),
             Self::Resume { .. } => {

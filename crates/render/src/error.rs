@@ -36,8 +36,8 @@ pub enum RenderError {
     },
     /// The picture has more pixels than the device can hand over at once.
     #[error(
-        "a picture of {width} x {height} pixels: {adapter} hands over {most} pixels at most; use a smaller \
-         --size, such as {}x{}",
+        "a picture of {width} x {height} pixels: {adapter} hands over {most} pixels at most; a smaller \
+         one, such as {}x{}, fits",
         .fits[0], .fits[1]
     )]
     TooManyPixels {
@@ -54,7 +54,7 @@ pub enum RenderError {
     },
     /// The device has no memory for the picture.
     #[error(
-        "a picture of {width} x {height} pixels: {adapter} has no memory for it; use a smaller --size, or a \
+        "a picture of {width} x {height} pixels: {adapter} has no memory for it; draw a smaller one, or use a \
          device with more memory"
     )]
     OutOfMemory {

@@ -178,10 +178,9 @@ fn start_message(lines: &[String], count: &usize, advice: &[String]) -> String {
     } else {
         String::new()
     };
-    let advice: String = advice.iter().map(|line| format!("{line}\n")).collect();
+    let advice: String = advice.iter().map(|line| format!("\n{line}")).collect();
     format!(
-        "the start already intersects; a simulation needs a start without intersections:\n  {}{more}\n\
-         {advice}`bowknot run .. --dump FILE.ply` writes the offending triangles as a mesh",
+        "the start already intersects; a simulation needs a start without intersections:\n  {}{more}{advice}",
         lines.join("\n  ")
     )
 }

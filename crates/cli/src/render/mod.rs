@@ -8,6 +8,7 @@ mod gaps;
 
 use crate::args::{Direction, FrameRange, RenderOptions};
 use crate::exit::{Exit, Failure};
+use crate::hints::Hint;
 use crate::output;
 use crate::progress::Bar;
 use bowknot::io::{create_folder, write_atomic};
@@ -28,13 +29,21 @@ const MAX_FPS: f64 = 30.0;
 /// Approximate number of frames of a run that the camera is fitted to, in addition to those that are drawn.
 const FITTED_FRAMES: usize = 24;
 
+impl Hint for RenderError {
+    fn hint(&self) -> Option<&'static str> {
+        let is_too_large = matches!(self, Self::TooManyPixels { .. } | Self::OutOfMemory { .. });
+        is_too_large.then_some("--size WIDTHxHEIGHT")
+    }
+}
+
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
+        let message = error.with_hint();
         match error {
             RenderError::NoDriver { .. } | RenderError::Device { .. } | RenderError::OutOfMemory { .. } => {
-                Self::backend(error)
+                Self::backend(message)
             }
-            _ => Self::input(error),
+            _ => Self::input(message),
         }
     }
 }

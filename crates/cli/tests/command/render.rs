@@ -92,7 +92,7 @@ fn a_picture_that_is_too_large_says_which_would_fit() {
     if !drawn(&place.run("render run --out small.png --size 64x48")) {
         return;
     }
-    let says = ["16384 x 16384 pixels", "pixels at most", "--size, such as 8192x8192"];
+    let says = ["16384 x 16384 pixels", "pixels at most", "such as 8192x8192", "--size"];
     place.run("render run --out large.png --size 16384x16384").refused(2, &says);
     assert!(!place.path("large.png").exists());
 }
