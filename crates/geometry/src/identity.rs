@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Tells one state of an object from all others: what keeps data of an object, such as a search of a collision
-/// model, compares identities to notice another object of equal size.
+/// Tells one state of an object from all others: what keeps data of an object, such as a search of a
+/// collision model, compares identities to notice another object of equal size.
 ///
 /// Copies of an object share its identity, and a change gives it a new one. So equal identities mean equal
 /// content. The reverse does not hold: two objects that were built alike have two identities.

@@ -1,5 +1,6 @@
-//! A sheet is asked to go straight down, through a ball. Searches and steps alone drape it over the ball: what meets
-//! the ball waits there, the rest goes on. A picture of the middle from the side is printed for every few searches.
+//! A sheet is asked to go straight down, through a ball. Searches and steps alone drape it over the ball:
+//! what meets the ball waits there, the rest goes on. A picture of the middle from the side is printed for
+//! every few searches.
 //!
 //! `cargo run --release -p bowknot-stepper --example drape`
 #![allow(clippy::print_stdout)]

@@ -35,9 +35,9 @@ pub struct ForwardOptions {
     pub bound: Bound,
     /// Share of a pair's gap that one step may use up, the paper's gamma: above 0, at most 0.99. Default 0.9.
     pub damping: f64,
-    /// Minimum separation xi [m]: no step makes the gap of a pair smaller than it, but for rounding. Pairs that
-    /// start nearer can only open. At least 32 units in the last place of the largest coordinate are kept (96
-    /// with the isotropic bound): pairs nearer than 9 (64) are frozen. Default 0.
+    /// Minimum separation xi [m]: no step makes the gap of a pair smaller than it, but for rounding. Pairs
+    /// that start nearer can only open. At least 32 units in the last place of the largest coordinate are
+    /// kept (96 with the isotropic bound): pairs nearer than 9 (64) are frozen. Default 0.
     pub min_separation: f64,
 }
 
@@ -70,8 +70,8 @@ pub struct ForwardReport {
     pub search_due: bool,
     /// Number of pairs that touch, so that their vertices do not move although they want to.
     pub frozen_pairs: usize,
-    /// Number of vertices that do not move because their targets are not finite, or too far for floating point
-    /// (about 1e154 m).
+    /// Number of vertices that do not move because their targets are not finite, or too far for floating
+    /// point (about 1e154 m).
     pub not_finite: usize,
 }
 
@@ -106,8 +106,8 @@ pub struct ForwardReport {
 /// Let the start, given to [`Self::new`] or [`Self::restart`], be free of intersections. Then all positions
 /// that [`Self::advance`] reaches are, and so are the straight paths between them, whatever the targets,
 /// radii and minimum separations, and however many steps are made between two searches. The start is not
-/// judged here (`bowknot-check` can). Surfaces that intersect at the start may pass through each other further;
-/// pairs that touch there are frozen: their vertices do not move at all, not even apart.
+/// judged here (`bowknot-check` can). Surfaces that intersect at the start may pass through each other
+/// further; pairs that touch there are frozen: their vertices do not move at all, not even apart.
 ///
 /// Not covered are pairs that the model excludes: of primitives that share a vertex, of two obstacles, and of
 /// bodies whose filters exclude each other.
@@ -124,8 +124,8 @@ pub struct ForwardReport {
 ///   the ball of its radius about the place where it was ([`TrustRegions`]). A point of a primitive is a
 ///   convex combination of its vertices, so it has moved by at most rho. What remains exceeds 2 m. The margin
 ///   m is half of the minimum separation and 4 units in the last place of the largest coordinate. A position
-///   is off by at most 1.3 such units through rounding, and a vertex that has left 0.9995 of its ball does not
-///   move until the next search, so that no more roundings add up.
+///   is off by at most 1.3 such units through rounding, and a vertex that has left 0.9995 of its ball does
+///   not move until the next search, so that no more roundings add up.
 ///
 /// Neither part is safe without the other: a vertex that leaves its ball meets pairs that nothing limits.
 ///
@@ -196,9 +196,9 @@ impl Forward {
         Ok(forward)
     }
 
-    /// Lists the pairs anew, around the present positions: every pair that could meet while each vertex v moves
-    /// by at most `radii[v]` [m]. Larger radii mean fewer searches and more pairs. A vertex with radius 0 does
-    /// not move.
+    /// Lists the pairs anew, around the present positions: every pair that could meet while each vertex v
+    /// moves by at most `radii[v]` [m]. Larger radii mean fewer searches and more pairs. A vertex with radius
+    /// 0 does not move.
     ///
     /// All minimum separations are those of the options again.
     ///
@@ -224,8 +224,8 @@ impl Forward {
         Ok(())
     }
 
-    /// Makes one step toward `target` [m], one entry per vertex. A step goes no farther than the trust regions
-    /// and uses up no more than a share of each gap: repeat it, with or without new searches.
+    /// Makes one step toward `target` [m], one entry per vertex. A step goes no farther than the trust
+    /// regions and uses up no more than a share of each gap: repeat it, with or without new searches.
     ///
     /// All vertices of an obstacle move by the same fraction of their displacements. A vertex whose target is
     /// not finite does not move, nor does the obstacle that it belongs to.
@@ -310,8 +310,8 @@ impl Forward {
         self.trust_regions.radii.extend_from_slice(radii);
         let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(SMALLEST, f64::max);
         let farthest = largest(&mut self.positions.iter().map(|x| x.coords.amax()));
-        // Until the next search vertices are within one radius of the centers, and the ends that steps look at
-        // within two of the vertices (`shorten`). Twice a way counts as a coordinate.
+        // Until the next search vertices are within one radius of the centers, and the ends that steps look
+        // at within two of the vertices (`shorten`). Twice a way counts as a coordinate.
         let coordinate = farthest + 4.0 * largest(&mut radii.iter().copied());
         // Above what freezes a pair, by what rounding may take off its certified width: 10 units of a
         // difference of coordinates.
@@ -347,9 +347,10 @@ impl Forward {
     }
 
     /// Sets `ends`: the target, or where a vertex is on the way there after twice its radius. No step goes
-    /// farther, and rounding counts in units of the largest coordinate: a target on the moon would freeze what
-    /// is a micrometer apart. The vertices of an obstacle go the same share of their ways. Returns how many
-    /// vertices do not go anywhere because their targets are not finite, and whether any way is shortened.
+    /// farther, and rounding counts in units of the largest coordinate: a target on the moon would freeze
+    /// what is a micrometer apart. The vertices of an obstacle go the same share of their ways. Returns how
+    /// many vertices do not go anywhere because their targets are not finite, and whether any way is
+    /// shortened.
     fn shorten(&mut self, target: &[Point]) -> (usize, bool) {
         let Self { positions, shares, ends, trust_regions, .. } = self;
         let share = |(x, y, &radius): (&Point, &Point, &f64)| {

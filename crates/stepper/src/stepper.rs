@@ -45,22 +45,23 @@ pub struct StepReport {
     pub unhindered_lag: f64,
 }
 
-/// Workspace of the forward step: wanted displacements, step sizes, remaining fractions. For solvers that keep
-/// lists of pairs of their own; [`Forward`](crate::Forward) composes a search with these calls.
+/// Workspace of the forward step: wanted displacements, step sizes, remaining fractions. For solvers that
+/// keep lists of pairs of their own; [`Forward`](crate::Forward) composes a search with these calls.
 ///
 /// # Loose calls
 /// Alone, none of these calls makes a step safe. [`Self::begin`], [`Self::set_target`], limits and
 /// [`Self::advance`], in this order, are a safe step from positions without intersections if
 /// - the list of pairs has every pair that could meet while each vertex stays in its ball, such as what a
 ///   search within the radii of the balls finds;
-/// - all listed pairs limit the step, by [`Self::limit_by_planes`] or [`Self::limit_by_distances`], with their
-///   separations at the positions that it starts from;
+/// - all listed pairs limit the step, by [`Self::limit_by_planes`] or [`Self::limit_by_distances`], with
+///   their separations at the positions that it starts from;
 /// - [`Self::limit_by_trust_regions`], with the balls of that search, limits the step too (or, with one
 ///   distance for all pairs that are not listed, [`Self::limit_by_non_candidates`]);
 /// - nothing but further limits follows before [`Self::advance`], which gets the same positions.
 ///
 /// The others keep shapes ([`Self::limit_by_bodies`], [`Self::limit_by_groups`]) or choose lengths
-/// ([`Self::cap_travel`], [`Self::limit_travel`]). [`Self::limit_by_moving_planes`] has conditions of its own.
+/// ([`Self::cap_travel`], [`Self::limit_travel`]). [`Self::limit_by_moving_planes`] has conditions of its
+/// own.
 #[derive(Debug, Default)]
 pub struct Stepper {
     /// d = y - x [m].
@@ -258,9 +259,9 @@ impl Stepper {
         false
     }
 
-    /// As [`Self::limit_by_planes`], for vertices that move in their `tubes`, all at the same path time. Alone it
-    /// does not make a step safe: the list must have what could meet on these paths, and a vertex that the
-    /// limits keep from staying in its tube makes the others' limits wrong. A pair whose slab stays
+    /// As [`Self::limit_by_planes`], for vertices that move in their `tubes`, all at the same path time.
+    /// Alone it does not make a step safe: the list must have what could meet on these paths, and a vertex
+    /// that the limits keep from staying in its tube makes the others' limits wrong. A pair whose slab stays
     /// open while it moves along is not limited, so that motion common to both sides is free.
     ///
     /// Let the slab move by t f. Side *a* closes it by at most t max over a of -n.(u_i - f) plus its tube,
@@ -430,8 +431,8 @@ impl Stepper {
     }
 
     /// Limits the move of every vertex to half of `distance` [m], a lower bound of the distances of all pairs
-    /// that are no candidates: the paper's D^(l). It limits none of the candidates, and the distance is that of
-    /// the search less what vertices have moved since.
+    /// that are no candidates: the paper's D^(l). It limits none of the candidates, and the distance is that
+    /// of the search less what vertices have moved since.
     pub fn limit_by_non_candidates(&self, distance: f64, damping: f64) {
         let room = (0.5 * damping * distance - self.rounding().step).max(0.0);
         (0..self.displacements.len())
@@ -451,8 +452,8 @@ impl Stepper {
     /// Keeps every vertex in its trust region. Returns whether a trust region, rather than a pair or a cap,
     /// limits some vertex: then the pairs should be searched again.
     ///
-    /// It makes the list complete of which the trust regions are, and limits none of its pairs. Over many steps
-    /// with one list, roundings of positions may add up to more than the margin of the search.
+    /// It makes the list complete of which the trust regions are, and limits none of its pairs. Over many
+    /// steps with one list, roundings of positions may add up to more than the margin of the search.
     pub fn limit_by_trust_regions(&self, positions: &[Point], trust_regions: &TrustRegions) -> bool {
         (0..positions.len())
             .into_par_iter()

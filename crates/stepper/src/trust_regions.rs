@@ -9,8 +9,9 @@ const USABLE: f64 = 1.0 - 1e-3;
 ///
 /// The search leaves out a pair only if a certified lower bound of its distance exceeds the sum of the
 /// largest radii of its two sides. As long as every vertex stays in its ball, such a pair cannot meet. The
-/// balls themselves limit nothing: [`Stepper::limit_by_trust_regions`](crate::Stepper::limit_by_trust_regions)
-/// does, and [`Forward`](crate::Forward) always calls it.
+/// balls themselves limit nothing:
+/// [`Stepper::limit_by_trust_regions`](crate::Stepper::limit_by_trust_regions) does, and
+/// [`Forward`](crate::Forward) always calls it.
 #[derive(Clone, Debug, Default)]
 pub struct TrustRegions {
     /// Centers: positions at the last search [m].

@@ -85,7 +85,8 @@ fn vertices_go_as_far_as_their_radii_and_a_search_is_due_then() {
     assert!(report.search_due && forward.positions() == x, "{report:?}");
 }
 
-/// Far from the origin a position is rounded by much of a small radius, and by another part of it in each step.
+/// Far from the origin a position is rounded by much of a small radius, and by another part of it in each
+/// step.
 #[test]
 fn rounding_takes_no_vertex_out_of_its_ball_in_any_number_of_steps() {
     let ulp = f64::EPSILON * 2.0 * 1e4;

@@ -8,8 +8,8 @@ use bowknot_twoway::{
     TrustRegionSearch,
 };
 
-/// Two sheets, the upper one of which wants to go through the lower one. `mirrored`: the diagonals of their squares
-/// are the other ones. Pairs keep `delta` [m].
+/// Two sheets, the upper one of which wants to go through the lower one. `mirrored`: the diagonals of their
+/// squares are the other ones. Pairs keep `delta` [m].
 fn crossing(mirrored: bool, delta: f64) -> (Resolver, Vec<Point>, Vec<Point>) {
     const CELLS: u32 = 4;
     let (mut x, mut triangles) = (Vec::new(), Vec::new());

@@ -1,5 +1,5 @@
-//! Whatever is asked of `Forward`, no path crosses: problems are drawn by proptest, and every path is judged by
-//! code that the stepper and the search do not share.
+//! Whatever is asked of `Forward`, no path crosses: problems are drawn by proptest, and every path is judged
+//! by code that the stepper and the search do not share.
 
 use bowknot_check::{Judge, PathOptions, StateOptions};
 use bowknot_stepper::geometry::{HalfSpace, Point, Topology, Vector};
@@ -248,8 +248,8 @@ impl Problem {
         x.iter().enumerate().map(target).collect()
     }
 
-    /// Makes all steps and judges their paths. Returns how many moved and how many were made; none if the start
-    /// intersects.
+    /// Makes all steps and judges their paths. Returns how many moved and how many were made; none if the
+    /// start intersects.
     fn run(&self) -> Result<Option<[u32; 2]>, String> {
         let mut random = Random(self.seed);
         let (model, start) = self.build(&mut random);
