@@ -1,6 +1,6 @@
-//! Broad and narrow phase: every pair of non-adjacent primitives nearer than their radii.
+#![doc = include_str!("../README.md")]
 //!
-//! The crate knows positions, radii and which bodies may collide; it does not know forces or constraints.
+//! ## Stages
 //!
 //! One search has these stages, each in its own modules:
 //! 1. `frame`: positions relative to a local origin, in `f32`, with their radii;
@@ -42,7 +42,3 @@ pub use narrow::{separate_all, separate_one};
 pub use pairs::{Candidate, Pair, PairList, PairLookup};
 pub use search::ProximitySearch;
 pub use statistics::SearchStatistics;
-
-#[doc = include_str!("../README.md")]
-#[cfg(doctest)]
-struct Readme;

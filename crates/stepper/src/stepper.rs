@@ -41,7 +41,8 @@ pub struct StepReport {
     /// Largest remaining distance of a vertex that no pair holds back [m]. The caller knows which vertices
     /// these are; [`Stepper::advance`] leaves it 0, and the next one as well.
     pub unhindered: f64,
-    /// The same of prescribed vertices alone [m].
+    /// Largest remaining distance of a prescribed vertex that no pair holds back [m]; [`Stepper::advance`] leaves
+    /// it 0.
     pub unhindered_lag: f64,
 }
 
