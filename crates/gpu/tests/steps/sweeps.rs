@@ -220,11 +220,11 @@ fn sweeps_of_rows_without_a_color_are_those_of_the_twin() {
     }
 }
 
-/// The table of `docs/gpu/collisions.md`: how far the aim of a first step is from that after many sweeps
-/// where a few vertices have most of the rows, and seconds of a step.
+/// The figure of the design note on rows without a color: how far the aim of a first step is from that after
+/// many sweeps where a few vertices have most of the rows.
 #[test]
 #[ignore = "it prints a table"]
-fn errors_with_rows_that_have_no_color() {
+fn errors_by_sweeps_of_rows_without_a_color() {
     const MANY: usize = 3000;
     let (scene, target) = coarse_on_fine();
     let aims = |sweeps: usize| {
@@ -241,16 +241,4 @@ fn errors_with_rows_that_have_no_color() {
         format!("{:.4}", distance(&aims, &solved) / DELTA)
     });
     println!("| coarse on fine | {rows} | {} |", errors.join(" | "));
-    let mut collision =
-        with_settings(device(), &scene, &Constraints::default(), &Settings::default()).unwrap();
-    for _ in 0..3 {
-        collision.begin(&Call::toward(&target)).unwrap();
-        let timer = std::time::Instant::now();
-        let report = collision.step().unwrap();
-        println!("{:?} {} s", report.contact_rows, timer.elapsed().as_secs_f64());
-    }
-    println!(
-        "{:.1e}",
-        collision.end().unwrap().aims.iter().zip(&target).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
-    );
 }

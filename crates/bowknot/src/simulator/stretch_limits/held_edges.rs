@@ -61,6 +61,8 @@ struct Patch {
     places: Vec<Point>,
     /// Whether all limits can be met with these places, wherever the others are.
     is_loose: bool,
+    /// Whether the limits are those of these places and, unless loose, of the state of this time step.
+    is_current: bool,
     /// The limits of the edges then [m].
     limits: Vec<f64>,
 }
@@ -103,7 +105,7 @@ impl HeldEdges {
         let went_back = !self.going_back.is_empty();
         self.going_back = going_back(limited, x, before);
         // The state alone decides, so that a resumed run has the same bits.
-        self.patches.iter_mut().filter(|patch| !patch.is_loose).for_each(|patch| patch.places.clear());
+        self.patches.iter_mut().for_each(|patch| patch.is_current &= patch.is_loose);
         let moved = self.go_on(rest, x);
         others || moved || went_back || !self.going_back.is_empty()
     }
@@ -184,7 +186,18 @@ impl Patch {
         let graph = LimitedGraph::new(&edges.iter().map(beyond).collect::<Vec<_>>(), free);
         let limits: Vec<f64> = edges.iter().map(|(_, limit)| *limit).collect();
         let places = Vec::new();
-        Some(Self { vertices, free, edges, indices, graph, stretch, places, is_loose: false, limits })
+        Some(Self {
+            vertices,
+            free,
+            edges,
+            indices,
+            graph,
+            stretch,
+            places,
+            is_loose: false,
+            is_current: false,
+            limits,
+        })
     }
 
     /// The edges that yield, by index among all, with their limits [m].
@@ -206,16 +219,18 @@ impl Patch {
     /// Finds the limits at which the prescribed vertices can be where they are in `x` [m]; returns whether they
     /// are others than before.
     fn update(&mut self, rest: &[Point], x: &[Point]) -> bool {
-        let of = |points: &[Point], v: &u32| points[*v as usize];
         let held = &self.vertices[self.free..];
-        if self.places.len() == held.len()
-            && held.iter().zip(&self.places).all(|(v, place)| of(x, v) == *place)
-        {
+        let places: Vec<Point> = held.iter().map(|v| x[*v as usize]).collect();
+        let moved = places != self.places;
+        if self.is_current && !moved {
             return false;
         }
-        self.places = held.iter().map(|v| of(x, v)).collect();
-        let rest: Vec<Point> = self.vertices.iter().map(|v| of(rest, v)).collect();
-        self.is_loose = self.can_be_met(&rest[self.free..]);
+        let rest: Vec<Point> = self.vertices.iter().map(|v| rest[*v as usize]).collect();
+        if moved {
+            self.places = places;
+            self.is_loose = self.can_be_met(&rest[self.free..]);
+        }
+        self.is_current = true;
         let mut limits: Vec<f64> = self.edges.iter().map(|(_, limit)| *limit).collect();
         if !self.is_loose
             && let Some(points) = self.least_excess(&rest, x)
