@@ -40,7 +40,7 @@ fn with_impacts<F: ForwardStep<TrustRegionSearch>>(
         let ccd = AdditiveCcd { speed, max_iterations: 50, ..AdditiveCcd::default() };
         watched(preset, 1e-8, |scene| {
             let search = TrustRegionSearch::new(&scene);
-            let backward: LcpBackward = LcpBackward::default();
+            let backward = LcpBackward::new();
             let forward = forward(ccd).map_err(ResolveError::Params)?;
             Ok(Resolver::with_stages(scene, search, backward, forward))
         });
@@ -98,7 +98,7 @@ impl<S: Search> ForwardStep<S> for Unlimited {
 fn steps_that_ignore_impacts_are_found() {
     let unlimited = |scene: CollisionScene| {
         let search = TrustRegionSearch::new(&scene);
-        let backward: LcpBackward = LcpBackward::default();
+        let backward = LcpBackward::new();
         Ok(Resolver::with_stages(scene, search, backward, Unlimited::default()))
     };
     let check = |scenario: &_| check_with(scenario, Judged::Safety, unlimited);

@@ -88,7 +88,7 @@ fn two_way<F: ForwardStep<TrustRegionSearch> + 'static>(
     forward: F,
 ) -> Box<dyn Method> {
     let search = TrustRegionSearch::new(&scene);
-    let backward: LcpBackward = LcpBackward::default();
+    let backward = LcpBackward::new();
     Box::new(Composed::new(name, Resolver::with_stages(scene, search, backward, forward)))
 }
 

@@ -86,6 +86,11 @@ impl Bench {
         self.cases.as_ref().is_none_or(|part| name.contains(part.as_str()))
     }
 
+    /// Whether that case alone is wanted.
+    pub fn asks_for(&self, name: &str) -> bool {
+        self.cases.as_deref() == Some(name)
+    }
+
     /// Starts the time of a figure.
     pub fn begin_figure(&self) {
         self.figure_timer.set(Instant::now());

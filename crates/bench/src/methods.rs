@@ -163,7 +163,7 @@ pub fn name_of(method: &str, change: &str) -> String {
 /// The two-way method of this project; its parameters define the presets.
 fn two_way(scene: CollisionScene) -> Built {
     let search = TrustRegionSearch::new(&scene);
-    let backward: LcpBackward = LcpBackward::default();
+    let backward = LcpBackward::new();
     composed(Resolver::with_stages(scene, search, backward, CertifiedForward::default()))
 }
 
@@ -191,7 +191,7 @@ fn chebyshev(scene: CollisionScene) -> Built {
 /// The two-way method with another forward step.
 fn forward<F: ForwardStep<TrustRegionSearch> + 'static>(scene: CollisionScene, step: F) -> Built {
     let search = TrustRegionSearch::new(&scene);
-    let backward: LcpBackward = LcpBackward::default();
+    let backward = LcpBackward::new();
     composed(Resolver::with_stages(scene, search, backward, step))
 }
 

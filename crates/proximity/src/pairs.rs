@@ -147,12 +147,19 @@ impl PairList {
         &self.pairs
     }
 
+    /// All pairs with their kinds, in the order of [`Self::pairs`].
+    pub fn iter(&self) -> impl Iterator<Item = (PairKind, &Pair)> {
+        PairKind::ALL
+            .into_iter()
+            .flat_map(|kind| self.pairs[self.range(kind)].iter().map(move |pair| (kind, pair)))
+    }
+
     /// Where the pairs of a kind stand in [`Self::pairs`].
     pub fn range(&self, kind: PairKind) -> Range<usize> {
         self.starts[kind as usize]..self.starts[kind as usize + 1]
     }
 
-    /// PairTest of the pair at `index` of [`Self::pairs`].
+    /// Kind of the pair at `index` of [`Self::pairs`].
     #[inline]
     pub fn kind(&self, index: usize) -> PairKind {
         let k = self.starts[1..5].iter().filter(|&&start| start <= index).count();

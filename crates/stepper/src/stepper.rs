@@ -122,8 +122,16 @@ impl Stepper {
     }
 
     /// Starts a step from `positions` toward `target`. A vertex whose target is not finite does not move;
-    /// returns the number of these vertices.
+    /// returns the number of these vertices: all of them if there are fewer or more targets than positions. A
+    /// call is begun here if [`Self::begin`] has not begun one for so many vertices.
     pub fn set_target(&mut self, positions: &[Point], target: &[Point]) -> usize {
+        if positions.len() != target.len() {
+            self.set_target(positions, positions);
+            return positions.len();
+        }
+        if self.alphas.len() != positions.len() {
+            self.begin(positions.len());
+        }
         self.displacements.resize(positions.len(), Vector::zeros());
         self.caps.resize(positions.len(), 1.0);
         let vertices =
@@ -508,7 +516,8 @@ impl Stepper {
     }
 
     /// Takes the step x <- x + alpha d. The result is y up to rounding where alpha = 1, and exactly x where
-    /// alpha = 0. It is as safe as the limits that were set: without any, it goes to the target.
+    /// alpha = 0. It is as safe as the limits that were set: without any, it goes to the target. Vertices that
+    /// have no target stay where they are.
     pub fn advance(&mut self, positions: &mut [Point]) -> StepReport {
         let chunks = (
             self.alphas.par_chunks_mut(CHUNK),
@@ -538,7 +547,7 @@ fn advance_chunk(
     positions: &mut [Point],
 ) -> StepReport {
     let mut report = StepReport::default();
-    for k in 0..positions.len() {
+    for k in 0..positions.len().min(alphas.len()).min(displacements.len()) {
         let alpha = f64::from_bits(*alphas[k].get_mut());
         let d = displacements[k];
         if alpha > 0.0 {

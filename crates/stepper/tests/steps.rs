@@ -43,6 +43,23 @@ fn a_closing_pair_keeps_a_tenth_of_its_gap_above_the_minimum_separation() {
 }
 
 #[test]
+fn vertices_without_a_target_stay_and_a_call_need_not_be_begun() {
+    let x = vertex_over_triangle(0.5);
+    let mut stepper = Stepper::default();
+    let mut next = x.clone();
+    stepper.advance(&mut next);
+    assert_eq!(next, x, "no target at all");
+    assert_eq!(stepper.set_target(&x, &x[..3]), 4);
+    stepper.advance(&mut next);
+    assert_eq!(next, x, "too few targets");
+    let y: Vec<Point> = x.iter().map(|x| x + Vector::z()).collect();
+    assert_eq!(stepper.set_target(&x[..3], &y[..3]), 0);
+    stepper.advance(&mut next);
+    assert_eq!((&next[..3], next[3]), (&y[..3], x[3]), "three of four have targets");
+    assert_eq!(stepper.remaining_fractions(), [0.0; 3]);
+}
+
+#[test]
 fn sides_share_the_gap_by_their_speeds() {
     let x = vertex_over_triangle(1.0);
     let up = Vector::new(0.0, 0.0, 1.0);

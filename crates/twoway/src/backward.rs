@@ -31,7 +31,7 @@ use bowknot_geometry::{Identity, Point, Vector};
 use bowknot_lcp::{self as lcp, ConstraintSet, Schedule, TangentVector};
 
 /// The default [`BackwardStep`]. `K` solves its rows, by default projected Gauss-Seidel.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct LcpBackward<K = ColoredSweeps> {
     solver: K,
     edges: EdgeLimits,
@@ -154,10 +154,49 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
     }
 }
 
-impl<K: Default> LcpBackward<K> {
+impl LcpBackward {
+    /// The backward step with its default solver.
+    pub fn new() -> Self {
+        Self::default()
+    }
+}
+
+impl<K: Default> Default for LcpBackward<K> {
+    fn default() -> Self {
+        Self::with_solver(K::default())
+    }
+}
+
+impl<K> LcpBackward<K> {
     /// A backward step with another solver for its rows.
     pub fn with_solver(solver: K) -> Self {
-        Self { solver, ..Self::default() }
+        Self {
+            solver,
+            edges: EdgeLimits::default(),
+            live: LiveEdges::default(),
+            selection: Selection::default(),
+            scene: Identity::default(),
+            movable: Vec::new(),
+            stretch_limits: Vec::new(),
+            forces: Vec::new(),
+            edge_multipliers: Vec::new(),
+            contacts: ContactRows::default(),
+            colors: Vec::new(),
+            lambda: Vec::new(),
+            friction: Vec::new(),
+            blocked: Blocked::default(),
+            reachable: Vec::new(),
+            proximal: ProximalWeights::default(),
+            oscillation: OscillationDamping::default(),
+            weights: Vec::new(),
+            free: Vec::new(),
+            y: Vec::new(),
+            touched: IndexSet::default(),
+            last_touched: IndexSet::default(),
+            spread: Vec::new(),
+            residuals: Chunks::default(),
+            body_residuals: Vec::new(),
+        }
     }
 }
 

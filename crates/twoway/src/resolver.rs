@@ -70,7 +70,7 @@ impl Resolver {
     ) -> Result<Self, ResolveError> {
         let scene = CollisionScene::new(model, rest, masses, contact, params)?;
         let search = TrustRegionSearch::new(&scene);
-        Ok(Self::with_stages(scene, search, LcpBackward::default(), CertifiedForward::default()))
+        Ok(Self::with_stages(scene, search, LcpBackward::new(), CertifiedForward::default()))
     }
 
     /// Changes the filters of the bodies, and the half-spaces, from the next call on, one entry per body and

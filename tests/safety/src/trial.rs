@@ -63,7 +63,7 @@ pub enum Judged {
 pub fn check(scenario: &Scenario) -> Result<Tally, String> {
     check_with(scenario, Judged::Promises, |scene| {
         let search = TrustRegionSearch::new(&scene);
-        let backward: LcpBackward = LcpBackward::default();
+        let backward = LcpBackward::new();
         Ok(Resolver::with_stages(scene, search, backward, CertifiedForward::default()))
     })
 }

@@ -58,7 +58,8 @@ impl Figure for Gpu {
     fn question(&self) -> &'static str {
         "Three time steps in contact on the first GPU, with collisions and dynamics, and the same on the CPU on as many \
          threads as `--threads` says, one of them where it takes long: seconds per time step, all of it included. The CPU leads the scenes into contact \
-         and writes that state to `leads/` in the folder of results; what lies there is taken. Per time step: iterations, \
+         and writes that state to `leads/` in the folder of results; what lies there is taken, and `--cases leads` makes them on a machine without a \
+         GPU. Per time step: iterations, \
          submissions, dispatches and waits of the device, milliseconds in which the host records and submits, and in which it waits \
          for results. `apart_mm`: between the centers of mass of the bodies after these time steps, at most. `paper_s`: the \
          collision stage alone in the paper, on its GPU, mean over other time steps. `gpu-stages.csv`: what the stages of the \
@@ -67,6 +68,9 @@ impl Figure for Gpu {
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
+        if bench.asks_for("leads") {
+            return leads(bench);
+        }
         let adapter = Adapter::choose(None)?;
         let is_small = adapter.is_software() || bench.size != Size::Full;
         println!("  {adapter}");
@@ -266,6 +270,18 @@ fn centers_of(simulator: &Simulator) -> Vec<[f64; 3]> {
         (sum / count).into()
     };
     simulator.world().bodies.iter().map(|body| center(body.vertices.clone())).collect()
+}
+
+/// Writes the states in contact of all scenes at full size.
+fn leads(bench: &Bench) -> Result<Report> {
+    let of_scenes = SCENES.map(|(name, scale, lead)| (name, scale, &[] as &[&str], lead));
+    let of_sizes = SIZES.map(|scale| ("drape", scale, &[FALL] as &[&str], FALL_LEAD));
+    for (name, scale, sets, lead) in of_scenes.into_iter().chain(of_sizes) {
+        let timer = Instant::now();
+        Course::new(bench, name, scale, sets, lead)?;
+        println!("  {name} {scale}: {:.1} s", timer.elapsed().as_secs_f64());
+    }
+    Ok(Report { finding: "states in contact".into(), parts: Vec::new() })
 }
 
 type Backends = (Box<dyn CollisionBackend>, Box<dyn NewtonBackend>);

@@ -32,7 +32,7 @@ fn stages_of_another_scene_begin_anew() {
     // Its trust regions hold the whole paths, with less margin than the new scene needs.
     let (mut other, start, y) = crossing(false, 1e-5);
     let mut search = TrustRegionSearch::new(other.scene());
-    let mut backward: LcpBackward = LcpBackward::default();
+    let mut backward = LcpBackward::new();
     other.detect_contacts(&start, &ResolveInput::default()).expect("a call");
     let mut state = other.state().clone();
     search.begin(other.scene(), &mut state, false);

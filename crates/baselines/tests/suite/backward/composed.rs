@@ -107,7 +107,7 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
     let target = scene.swapped();
     assert_same_on_any_number_of_threads(|| {
         let collision = || scene.collision_scene(params(6));
-        let chebyshev = InterStepChebyshev::new(LcpBackward::<ColoredSweeps>::default(), 0.9, 2);
+        let chebyshev = InterStepChebyshev::new(LcpBackward::new(), 0.9, 2);
         let methods: [Box<dyn Method>; 4] = [
             Box::new(Composed::new("Harmon", two_way_with(collision(), LinearSystem::default()))),
             Box::new(Composed::new("Tang", two_way_with(collision(), AugmentedLagrangian::new(20)))),

@@ -18,7 +18,7 @@ fn two_way<F: ForwardStep<TrustRegionSearch>>(
 ) -> Resolver<TrustRegionSearch, LcpBackward, F> {
     let collision = scene.collision_scene(params);
     let search = TrustRegionSearch::new(&collision);
-    Resolver::with_stages(collision, search, LcpBackward::default(), forward)
+    Resolver::with_stages(collision, search, LcpBackward::new(), forward)
 }
 
 fn check(name: &str, scene: &Scene, x: &[Point], report: &Statistics) {
