@@ -110,6 +110,53 @@ fn front_pages_link_to_addresses_alone() {
     }
 }
 
+/// The packages that a package needs, one line each, as cargo finds them.
+fn tree(package: &str, options: &[&str]) -> Vec<String> {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["tree", "--offline", "--edges", "normal", "--prefix", "none", "--format", "{p}"]);
+    let output = cargo.args(["--package", package]).args(options).current_dir(root()).output();
+    let output = output.expect("cargo starts");
+    assert!(output.status.success(), "{package}: {}", String::from_utf8_lossy(&output.stderr));
+    let words = |line: &str| line.split(' ').take(2).collect::<Vec<_>>().join(" ");
+    let mut lines: Vec<String> = String::from_utf8_lossy(&output.stdout).lines().skip(1).map(words).collect();
+    lines.sort();
+    lines.dedup();
+    lines.retain(|line| !line.is_empty() && line.split(' ').next() != Some(package));
+    lines
+}
+
+/// The counts are those of Linux: other systems need other packages.
+#[test]
+#[cfg(target_os = "linux")]
+fn front_pages_name_what_the_package_depends_on() {
+    for (folder, manifest) in public() {
+        let (package, has_library) = (name(&manifest), folder.join("src/lib.rs").exists());
+        let page = std::fs::read_to_string(folder.join("README.md")).expect("a front page");
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        let section = page.split_once("## Dependencies ").map(|(_, rest)| rest);
+        let Some(section) = section.filter(|_| has_library) else {
+            assert!(!has_library, "{package}: its front page does not say what it depends on");
+            continue;
+        };
+        let version = manifest_of_workspace("rust-version");
+        assert!(section.contains(&format!("Rust {version} or later")), "{package}: not the oldest compiler");
+        let all = tree(package, &[]).len();
+        let counted = section.contains(&format!(": {all} crates in all")) || all == 0;
+        assert!(counted, "{package}: it needs {all} crates: {section}");
+        let direct = tree(package, &["--depth", "1"]);
+        let names = direct.iter().filter_map(|line| line.split(' ').next());
+        let absent =
+            names.filter(|name| !name.starts_with("bowknot") && !section.contains(&format!("`{name}`")));
+        assert_eq!(absent.collect::<Vec<_>>(), Vec::<&str>::new(), "{package}: {section}");
+    }
+}
+
+/// A field that all packages share.
+fn manifest_of_workspace(field: &str) -> String {
+    let fields = manifest(&root())["workspace"]["package"].clone();
+    fields[field].as_str().expect("a text").to_owned()
+}
+
 /// The rules themselves can fail.
 #[test]
 fn faulty_packages_are_seen() {

@@ -1,12 +1,14 @@
 //! What the judge says.
 
 use bowknot_geometry::Point;
+#[cfg(feature = "serde")]
 use serde::Serialize;
 use std::fmt;
 
 /// The classes of pairs that are judged, in the order in which reports list them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum PairClass {
     /// An edge and a triangle (states only).
     EdgeTriangle,
@@ -37,7 +39,8 @@ impl PairClass {
 }
 
 /// Two primitives that intersect or touch.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct Intersection {
     /// What kind of primitives they are.
     pub class: PairClass,
@@ -53,7 +56,8 @@ pub struct Intersection {
 }
 
 /// The closest two primitives of a state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct Nearest {
     /// What kind of primitives they are.
     pub class: PairClass,
@@ -85,7 +89,8 @@ impl Default for StateOptions {
 }
 
 /// Verdict on a state.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct StateReport {
     /// The first intersections, ordered by class and elements.
     pub intersections: Vec<Intersection>,
@@ -120,7 +125,8 @@ impl Default for PathOptions {
 }
 
 /// Two primitives that meet on a path, or that could not be certified not to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct PathHit {
     /// What kind of primitives they are.
     pub class: PairClass,
@@ -137,7 +143,8 @@ pub struct PathHit {
 }
 
 /// Verdict on a straight path.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct PathReport {
     /// The first hits, ordered by class and elements.
     pub hits: Vec<PathHit>,

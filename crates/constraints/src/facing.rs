@@ -9,6 +9,7 @@
 
 use bowknot_geometry::{EdgeTriangles, PairKind, Point, Separation, Topology, Vector};
 use bowknot_proximity::Pair;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// A closest point is on the boundary of its primitive if one of its weights is at most this.
@@ -52,8 +53,9 @@ pub struct Facing {
 }
 
 /// The feature of a primitive that a closest point lies on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Feature {
     /// A vertex.
     Vertex(u32),

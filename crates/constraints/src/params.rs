@@ -1,6 +1,7 @@
 //! Parameters of contacts and edge-length limits.
 
 use bowknot_errors::{Checks, Parameters};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Largest ratio of an edge's length to its reference [1] where neither a body nor
@@ -8,8 +9,9 @@ use serde::{Deserialize, Serialize};
 pub const STRETCH_LIMIT: f64 = 1.1;
 
 /// Parameters of contacts and edge-length limits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct ContactParams {
     /// Contact distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster,
     /// rounder contacts with a visible gap; smaller: tighter contacts, more steps.
@@ -49,8 +51,9 @@ pub struct ContactParams {
 }
 
 /// Form of the contact constraint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum ContactForm {
     /// Signed distance along the normal: c = n . (p - q) - delta.
     Gap,
@@ -64,8 +67,9 @@ pub enum ContactForm {
 }
 
 /// How friction acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum FrictionModel {
     /// Coulomb's law in every backward step: tangential multipliers are at most mu times the normal's and
     /// solved with it.
@@ -79,8 +83,9 @@ pub enum FrictionModel {
 }
 
 /// Reference length of an edge's limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum EdgeReference {
     /// The length at the start of the call (paper, Eq. 17).
     Start,
@@ -89,8 +94,9 @@ pub enum EdgeReference {
 }
 
 /// How an edge's limit is solved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum EdgeForm {
     /// A row linearized at the current state (paper, Eq. 17).
     Linear,

@@ -1,10 +1,12 @@
 //! What a device was asked for.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Sub};
 
 /// Counts and seconds of the host beside a device, since the device was opened.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct DeviceWork {
     /// Recordings with dispatches that were submitted.
     pub submissions: usize,

@@ -10,12 +10,14 @@ use crate::model::measures::volume;
 use crate::nodes::CHUNK;
 use bowknot_geometry::{Point, Vector, divide_tetrahedron};
 use rayon::prelude::*;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::Range;
 
 /// Elastic energy of all deformable bodies [J] by the kind of element that stores it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct ElasticEnergies {
     /// Stretching and shearing of cloth.
     pub membrane: f64,
@@ -37,7 +39,8 @@ impl ElasticEnergies {
 }
 
 /// Energies of all deformable bodies [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Energies {
     /// Kinetic energy, 1/2 sum m |v|^2.
     pub kinetic: f64,

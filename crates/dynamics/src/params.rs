@@ -2,11 +2,13 @@
 
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Vector;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Parameters of [`crate::Dynamics`]. The number of Newton iterations per time step is up to the caller.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct DynamicsParams {
     /// Gravity and air.
     pub environment: Environment,
@@ -15,8 +17,9 @@ pub struct DynamicsParams {
 }
 
 /// Gravity and air.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct Environment {
     /// Acceleration of gravity [m/s^2], unless a body has its own. Default (0, 0, -9.81).
     pub gravity: Vector,
@@ -37,8 +40,9 @@ pub struct Environment {
 }
 
 /// Newton's method and its linear solves.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct NewtonParams {
     /// Residual at which linear solves end [1], in the preconditioner's norm and relative to the right-hand
     /// side of the first solve of the time step. Intermediate solves of a target end at 0.03 of their own
@@ -72,8 +76,9 @@ pub struct NewtonParams {
 }
 
 /// Preconditioner of the linear solve.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum PreconditionerKind {
     /// The inverses of the 3 x 3 diagonal blocks: little memory, many iterations.
@@ -86,8 +91,9 @@ pub enum PreconditionerKind {
 }
 
 /// What is done with the negative curvatures of an element, so that the system is positive definite.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum HessianFilter {
     /// They are set to zero, which gives the nearest positive semi-definite matrix. It is a little faster
     /// near a solution, if many iterations are made.

@@ -3,10 +3,12 @@
 use crate::half_space::HalfSpace;
 use crate::identity::Identity;
 use crate::topology::Topology;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Which bodies a body collides with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct BodyFilter {
     /// Whether the body is an obstacle. Obstacles have no degrees of freedom; two obstacles never form a
     /// pair.

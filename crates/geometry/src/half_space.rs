@@ -1,11 +1,13 @@
 //! Analytic half-spaces: grounds and walls.
 
 use crate::point::{Point, Vector};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// The solid below a plane: points with `normal . x < offset` are inside. With an offset of minus infinity it
 /// is empty, and meets nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct HalfSpace {
     /// Outward unit normal.
     pub normal: Vector,

@@ -2,10 +2,12 @@
 
 use crate::point::Point;
 use crate::union_find::UnionFind;
+#[cfg(feature = "serde")]
 use serde::Serialize;
 
 /// A connected part of a mesh.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct MeshPart {
     /// Its smallest vertex.
     pub vertex: u32,
@@ -19,7 +21,8 @@ pub struct MeshPart {
 
 /// A connected set of border edges, which belong to one triangle each: the outline of a sheet, a hole, an
 /// open seam.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct MeshBorder {
     /// Its smallest vertex.
     pub vertex: u32,
@@ -30,7 +33,8 @@ pub struct MeshBorder {
 }
 
 /// An edge that joins its triangles in an unusual way.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct MeshEdge {
     /// Its vertices, ascending.
     pub vertices: [u32; 2],
@@ -41,7 +45,8 @@ pub struct MeshEdge {
 }
 
 /// How the triangles of a mesh hang together.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct MeshStructure {
     /// Connected parts, the one with most triangles first.
     pub parts: Vec<MeshPart>,

@@ -1,5 +1,6 @@
 //! The kinds of pairs of primitives, and the layout of their vertices.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// The kinds of pairs of primitives between which distances are measured.
@@ -7,8 +8,9 @@ use serde::{Deserialize, Serialize};
 /// Every pair kind lists its vertices in an array of four: first those of side *a*, then those of side *b*.
 /// Unused places have no meaning. The signs of gradients follow: moving a vertex of side *a* along the normal
 /// opens the gap, moving one of side *b* closes it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[repr(u8)]
 pub enum PairKind {
     /// Two particles: `[a | b]`.

@@ -1,9 +1,11 @@
 //! What an iterative solver reports.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// What an iterative solver did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct LcpInfo {
     /// Sweeps done.
     pub sweeps: u32,

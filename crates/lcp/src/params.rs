@@ -2,11 +2,13 @@
 
 use crate::vector::TangentVector;
 use bowknot_errors::{Checks, Parameters};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Shape of the region that bounds a friction multiplier by mu times the normal multiplier.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum FrictionBound {
     /// A disc: isotropic friction, the same bound in every tangential direction.
     #[default]
@@ -31,8 +33,9 @@ impl FrictionBound {
 }
 
 /// Parameters of the iterative solvers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct LcpParams {
     /// Largest number of sweeps. Default 64. More sweeps are more accurate; the cost is linear in them.
     pub max_sweeps: u32,

@@ -5,11 +5,13 @@ use crate::kernels::{friction_multiplier, limit_multiplier, row_multiplier};
 use crate::params::FrictionBound;
 use crate::problem::LcpProblem;
 use crate::state::LcpState;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Largest residuals over all constraints, scheduled or not. A constraint is left out if none of its nodes
 /// can move: no solver could change it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Residuals {
     /// Largest |lambda - clamp(lambda - s, 0, upper)| of a row, which is |min(lambda, s)| for a hard row: it
     /// is zero exactly where lambda >= 0, s >= 0 and lambda s = 0. It compares lambda with s as the paper

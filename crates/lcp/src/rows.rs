@@ -3,6 +3,7 @@
 use crate::error::LcpError;
 use crate::vector::{TangentVector, Vector};
 use rayon::prelude::*;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// A linear inequality over up to four nodes: s = offset + sum_k gradients\[k\] . y\[vertices\[k\]\] >= 0.
@@ -75,7 +76,8 @@ impl Row {
 }
 
 /// A limit on the distance between two nodes: |y_a - y_b| <= limit. Its multiplier is a vector.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[repr(C)]
 pub struct DistanceLimit {
     /// The nodes a and b.

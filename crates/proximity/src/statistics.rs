@@ -1,12 +1,14 @@
 //! Counts of a search.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Counts of the last search.
 ///
 /// All but `pairs` measure effort, and may differ between two searches of the same state after different
 /// earlier searches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct SearchStatistics {
     /// Pairs that share no vertex, may collide, and whose inflated boxes overlap.
     pub candidates: u64,

@@ -1,11 +1,13 @@
 //! Parameters of the forward step and of the trust regions.
 
 use bowknot_errors::{Checks, Parameters};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Parameters of the forward step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct ForwardParams {
     /// The bound that limits the vertices. Default planes.
     pub bound: Bound,
@@ -27,8 +29,9 @@ pub struct ForwardParams {
 }
 
 /// The bound that keeps steps safe.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Bound {
     /// Half of the smallest distance, whatever the direction (paper, Eq. 18-20).
     Isotropic,
@@ -37,8 +40,9 @@ pub enum Bound {
 }
 
 /// The rule for the distance that vertices may travel between two searches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum TrustRegionRule {
     /// One distance for all vertices: the next search is due when the fastest vertex has used it up (paper,
     /// Algorithm 1).

@@ -14,11 +14,13 @@ use crate::error::ResolveError;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::PairKind;
 use bowknot_proximity::{CollisionModel, Pair};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Contact data of a body.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct BodyContact {
     /// Guaranteed smallest gap [m] to a body of the same thickness: the minimum separation of a pair is the
     /// mean of both sides'. None: the minimum separation of the scene.
@@ -35,8 +37,9 @@ pub struct BodyContact {
 }
 
 /// Contact data of a half-space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct HalfSpaceContact {
     /// As [`BodyContact::thickness`]. None: 0 against a body with a thickness, so that the gap between body
     /// and plane is at least half of the body's thickness; the scene's minimum separation against others.
@@ -46,8 +49,9 @@ pub struct HalfSpaceContact {
 }
 
 /// One side of a [`PairFriction`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum ContactSide {
     /// A body of the collision model, obstacles included.
     Body(u32),
@@ -56,8 +60,9 @@ pub enum ContactSide {
 }
 
 /// Coefficient of friction between two bodies, in place of the mean of their own.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PairFriction {
     /// The two sides, in any order. The same body twice stands for its contacts with itself.
     pub sides: [ContactSide; 2],

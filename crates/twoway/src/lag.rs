@@ -2,11 +2,13 @@
 
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// How far a prescribed entity lags behind its keyframe.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Lag {
     /// The entity.
     pub entity: PrescribedEntity,
@@ -15,8 +17,9 @@ pub struct Lag {
 }
 
 /// Something that follows keyframes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum PrescribedEntity {
     /// An obstacle: its body.
     Obstacle(u32),

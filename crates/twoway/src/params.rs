@@ -4,11 +4,13 @@ use crate::stop::{StopParams, StopRule};
 use bowknot_constraints::ContactParams;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_stepper::ForwardParams;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Parameters of [`crate::Resolver`]. `Params::default()` is [`Params::fast`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct Params {
     /// Contacts and edge-length limits.
     pub contact: ContactParams,
@@ -17,8 +19,9 @@ pub struct Params {
 }
 
 /// Parameters of the two-way loop.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct SolverParams {
     /// The backward step.
     pub backward: BackwardParams,
@@ -29,8 +32,9 @@ pub struct SolverParams {
 }
 
 /// Parameters of the backward step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct BackwardParams {
     /// Gauss-Seidel sweeps per backward step, on the CPU and on a GPU. More: a more accurate target, slower
     /// steps. Default 8 (paper: 1).

@@ -2,10 +2,12 @@
 
 use crate::lag::Lag;
 use crate::waits::Wait;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// What a call of [`crate::Resolver::resolve`] did and how it ended.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Statistics {
     /// Two-way steps taken.
     pub steps: usize,
@@ -71,7 +73,7 @@ pub struct Statistics {
     pub slowest_body: Option<u32>,
     /// What held back the vertices that had farthest to go in the last step, if the call took 32 steps or
     /// more, or did not converge, unless [`crate::ResolveInput::max_steps`] cut it short.
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     pub waits: Vec<Wait>,
     /// Wall seconds by stage.
     pub seconds: StageSeconds,
@@ -80,7 +82,8 @@ pub struct Statistics {
 }
 
 /// Wall seconds by stage.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct StageSeconds {
     /// The whole call.
     pub total: f64,
@@ -102,7 +105,8 @@ impl StageSeconds {
 }
 
 /// Work that was skipped because nothing needed it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Skipped {
     /// Steps that reused the pairs of an earlier search.
     pub searches: usize,

@@ -2,6 +2,7 @@
 
 use bowknot_errors::{Checks, Parameters};
 use bowknot_stepper::StepReport;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Largest number of steps beyond [`StopRule::Travel`] while no contact presses: the target is then reached
@@ -18,8 +19,9 @@ const DEFAULT_RESIDUAL: f64 = 1e-4;
 /// When a call ends.
 ///
 /// As a table, for example in a file, the fields of the rule are keys beside `rule`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "StopTable", into = "StopTable")]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "StopTable", into = "StopTable"))]
 pub struct StopParams {
     /// Largest number of two-way steps, the paper's L. Default: by the time step, 512 up to dt = 1/100 s,
     /// 2048 from dt = 1/20 s, linear in dt between. In a simulation, a call that another Newton iteration
@@ -271,8 +273,8 @@ fn default_max_steps(time_step: Option<f64>) -> usize {
 }
 
 /// [`StopParams`] as a table.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 struct StopTable {
     max_steps: Option<usize>,
     max_seconds: Option<f64>,
@@ -284,8 +286,8 @@ struct StopTable {
     residual: Option<f64>,
 }
 
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 enum RuleName {
     Clock,
     Travel,

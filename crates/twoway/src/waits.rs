@@ -6,6 +6,7 @@ use bowknot_geometry::{PairKind, Separation};
 use bowknot_proximity::Pair;
 use bowknot_stepper::{Bound, Stepper};
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -15,7 +16,8 @@ const MOST: usize = 3;
 const LOOKED_AT: usize = 64;
 
 /// A vertex that has far to go, and what holds it back in the last two-way step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Wait {
     /// The vertex.
     pub vertex: u32,
@@ -32,8 +34,9 @@ pub struct Wait {
 }
 
 /// Why a vertex did not go on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum WaitReason {
     /// The planes of a pair of its own.
     Planes,
@@ -48,7 +51,8 @@ pub enum WaitReason {
 }
 
 /// A pair that stops a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct WaitPair {
     /// Its kind.
     pub kind: PairKind,

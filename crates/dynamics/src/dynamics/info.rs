@@ -1,10 +1,12 @@
 //! Results of Newton iterations.
 
 use crate::linear::accuracy::CgInfo;
+#[cfg(feature = "serde")]
 use serde::Serialize;
 
 /// Statistics of one target.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct NewtonInfo {
     /// The linear solves: the sum of their iterations, the last residual, whether all converged.
     pub cg: CgInfo,
@@ -42,7 +44,8 @@ impl NewtonInfo {
 }
 
 /// How far a state is from a solution of the time step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct Residual {
     /// Root of the sum of squares of the forces on free nodes that are out of balance [N].
     pub force: f64,

@@ -2,10 +2,12 @@
 
 use super::system::System;
 use bowknot_geometry::Vector;
+#[cfg(feature = "serde")]
 use serde::Serialize;
 
 /// How a linear solve ended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct CgInfo {
     /// Number of iterations, each with one matrix-vector product.
     pub iterations: usize,

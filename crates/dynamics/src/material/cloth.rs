@@ -4,6 +4,7 @@ use super::checks::{non_negative, positive};
 use super::rest_shape::RestShape;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Vector;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// A woven or knitted sheet, linear in the rotated frame. It is isotropic, or has different stiffnesses along
@@ -13,8 +14,9 @@ use serde::{Deserialize, Serialize};
 /// homogeneous sheet with Young's modulus E they are `E t` and `E t^3 / (12 (1 - nu^2))`, see
 /// [`ClothMaterial::from_young_modulus`]. The yarns of a fabric slide, so that it bends far more easily than
 /// that.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct ClothMaterial {
     /// Mass per area [kg/m^2]. Larger: heavier, slower to accelerate.
     pub density: f64,
@@ -23,12 +25,12 @@ pub struct ClothMaterial {
     pub stretch_stiffness: f64,
     /// Young's modulus times thickness along the weft [N/m], across `warp_direction`. Default: that along the
     /// warp.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub weft_stiffness: Option<f64>,
     /// Shear modulus times thickness [N/m]: force per width and angle between warp and weft. Woven cloth
     /// shears 10 to 100 times more easily than it stretches. Default: sqrt(warp weft)/(2 (1 + nu)), isotropic
     /// if warp and weft are equal.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub shear_stiffness: Option<f64>,
     /// Direction of the warp in the rest state [1], projected into each triangle. It is used only with a weft
     /// or shear stiffness. Default (1, 0, 0).

@@ -2,11 +2,13 @@
 
 use super::checks::positive;
 use bowknot_errors::{Checks, Parameters};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// A grain: a sphere with mass. The only forces on it are gravity and the drag of air.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct ParticleMaterial {
     /// Mass per volume [kg/m^3]. Default 2650, quartz.
     pub density: f64,

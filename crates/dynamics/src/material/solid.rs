@@ -2,11 +2,13 @@
 
 use super::checks::{non_negative, positive};
 use bowknot_errors::{Checks, Parameters};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// An isotropic solid.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct SolidMaterial {
     /// Mass per volume [kg/m^3]. Default 1000.
     pub density: f64,
@@ -23,8 +25,9 @@ pub struct SolidMaterial {
 }
 
 /// Law of large strains of a solid. At small strains both are linear elasticity.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum SolidModel {
     /// St. Venant-Kirchhoff: stress is linear in the Green strain. It stiffens under tension. Compressed

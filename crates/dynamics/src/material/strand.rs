@@ -3,12 +3,14 @@
 use super::checks::{non_negative, positive};
 use super::rest_shape::RestShape;
 use bowknot_errors::{Checks, Parameters};
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// A thin round rod that stretches and bends; it does not resist twist.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct StrandMaterial {
     /// Mass per length [kg/m]. Default: that of hair.
     pub density: f64,

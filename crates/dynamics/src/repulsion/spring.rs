@@ -1,11 +1,13 @@
 //! The springs that callers describe contacts by.
 
 use bowknot_geometry::Vector;
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// What a spring stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum SpringKind {
     /// A contact: the gap is n . sum beta_i x_i - offset, with a normal that stays while Newton's method
     /// iterates.
@@ -17,7 +19,8 @@ pub enum SpringKind {
 
 /// A contact between up to four vertices, or an upper limit of a distance, as a nonlinear spring. Its force
 /// is a function of the gap, see [`crate::repulsion`].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct RepulsionSpring {
     /// What it stands for.
     pub kind: SpringKind,

@@ -1,5 +1,6 @@
 //! The primitives of a scene and how they are numbered.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// The primitives of a scene over one array of vertices.
@@ -8,7 +9,8 @@ use serde::{Deserialize, Serialize};
 /// strand, of edge-edge pairs; and every particle (a vertex of no edge), of vertex-vertex, vertex-edge and
 /// vertex-triangle pairs. A vertex in none of the lists does not collide. [`Topology::builder`] fills all
 /// lists.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct Topology {
     /// Number of vertices.
     pub vertex_count: usize,
