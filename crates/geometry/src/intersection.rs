@@ -38,6 +38,14 @@ pub fn edge_triangle(edge: [&Point; 2], triangle: [&Point; 3]) -> bool {
     }
 }
 
+/// Whether two closed triangles share a point, decided exactly: whether an edge of one meets the other.
+pub fn triangle_triangle(a: [&Point; 3], b: [&Point; 3]) -> bool {
+    let meets = |[p, q, r]: [&Point; 3], triangle| {
+        [[p, q], [q, r], [r, p]].iter().any(|&edge| edge_triangle(edge, triangle))
+    };
+    meets(a, b) || meets(b, a)
+}
+
 /// Whether two closed segments share a point, decided exactly.
 pub fn edge_edge(edge_a: [&Point; 2], edge_b: [&Point; 2]) -> bool {
     let ([a0, a1], [b0, b1]) = (edge_a, edge_b);

@@ -36,7 +36,7 @@ pub use mesh_check::{MeshProblem, check_mesh};
 pub use mesh_structure::{MeshBorder, MeshEdge, MeshPart, MeshStructure};
 pub use pair::PairKind;
 pub use point::{Point, Vector};
-pub use separation::Separation;
+pub use separation::{Separation, TriangleFeature, TriangleSeparation};
 pub use tet_check::{SharedSide, TetFaults, check_tets};
 pub use topology::{
     Components, EdgeTriangles, TETRAHEDRON_EDGES, Topology, TopologyBuilder, TopologyError, add_edge_middles,

@@ -15,20 +15,18 @@
 //! than 17.5 u m; `WIDTH_ROUNDING` is 20 u. Differences beyond [1e-70, 1e70] m are scaled by a power of two,
 //! so that underflow (errors of 2^-1074) stays far below that.
 
+mod slab;
+mod triangles;
+
 use crate::distance::{self, Local, MAX_SCALE, MIN_SCALE};
 use crate::half_space::HalfSpace;
 use crate::pair::PairKind;
 use crate::point::{Point, Vector};
+use slab::{
+    MIN_WIDTH_RATIO, MOVED_WIDTH_ROUNDING, Slab, WIDTH_ROUNDING, largest_coordinate, smallest_dot, unit,
+};
 
-/// Bound of the rounding of a slab width, per largest coordinate difference; see the module.
-const WIDTH_ROUNDING: f64 = 10.0 * f64::EPSILON;
-
-/// Bound of the rounding of a slab width of a pair that was moved to its first vertex: two more roundings of each difference, 2 u *
-/// sqrt(3) m, before all others.
-const MOVED_WIDTH_ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// If the width is below this part of the computed distance, other directions are tried.
-const MIN_WIDTH_RATIO: f64 = 0.9;
+pub use triangles::{TriangleFeature, TriangleSeparation, triangle_triangle};
 
 /// A pair's contact geometry, with a certified lower bound of its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,33 +132,7 @@ fn certify<const N: usize>(kind: PairKind, points: &[Point; 4], differences: [Ve
     separation
 }
 
-/// Largest absolute coordinate. Plain comparisons suffice, here and below: `f64::max` and `min` need more
-/// instructions to treat not-a-number, which differences of finite numbers never are.
-#[inline(always)]
-fn largest_coordinate(vectors: &[Vector]) -> f64 {
-    let larger = |m: f64, x: f64| if m > x { m } else { x };
-    let largest = vectors.iter().fold(Vector::zeros(), |m, d| m.zip_map(&d.abs(), larger));
-    larger(larger(largest.x, largest.y), largest.z)
-}
-
-/// Smallest dot product.
-#[inline(always)]
-fn smallest_dot(normal: &Vector, differences: &[Vector]) -> f64 {
-    differences
-        .iter()
-        .map(|d| normal.dot(d))
-        .fold(f64::INFINITY, |smallest, x| if smallest < x { smallest } else { x })
-}
-
-/// v / |v| with a length within 5 u of 1, given |v| as [`distance::norm`] computes it.
-#[inline(always)]
-fn unit(v: &Vector, norm: f64) -> Option<Vector> {
-    // Shorter vectors could overflow the reciprocal, and their squares have lost bits.
-    if norm > 1e-140 && norm < f64::INFINITY { Some(v * (1.0 / norm)) } else { None }
-}
-
-/// Tries every direction in which two features of the pair can face each other, with both signs, and keeps
-/// the widest slab.
+/// Keeps the widest slab of all directions in which two features of the pair can face each other.
 #[cold]
 #[inline(never)]
 fn try_other_directions(
@@ -170,60 +142,10 @@ fn try_other_directions(
     slack: f64,
     separation: &mut Separation,
 ) {
-    let mut attempt = |direction: Vector| {
-        // Scaled first: a cross product of nearly parallel vectors may be very short.
-        let Some(direction) = direction.try_normalize(0.0).filter(|d| d.iter().all(|x| x.is_finite())) else {
-            return;
-        };
-        let Some(normal) = unit(&direction, direction.norm()) else { return };
-        for normal in [normal, -normal] {
-            let width = smallest_dot(&normal, differences) - slack;
-            if width > separation.width {
-                separation.normal = normal;
-                separation.width = width;
-            }
-        }
-    };
-    let [p0, p1, p2, p3] = points;
-    match kind {
-        PairKind::VertexTriangle => {
-            attempt(common_normal(&(p2 - p1), &(p3 - p1)));
-            attempt(across(p0, [p1, p2]));
-            attempt(across(p0, [p2, p3]));
-            attempt(across(p0, [p3, p1]));
-        }
-        PairKind::EdgeEdge => {
-            attempt(common_normal(&(p1 - p0), &(p3 - p2)));
-            attempt(across(p0, [p2, p3]));
-            attempt(across(p1, [p2, p3]));
-            attempt(across(p2, [p0, p1]));
-            attempt(across(p3, [p0, p1]));
-        }
-        PairKind::VertexEdge => attempt(across(p0, [p1, p2])),
-        PairKind::VertexVertex | PairKind::VertexHalfSpace => {}
-    }
-    for d in differences {
-        attempt(*d);
-        // If all points are on one line, only this direction is perpendicular to it.
-        attempt(d.cross(&Vector::ith(d.iamin(), 1.0)));
-    }
-    // All differences are zero or too short to normalize, so no direction was tried.
-    if separation.width == f64::NEG_INFINITY {
-        separation.width = -slack;
-    }
-}
-
-/// A vector perpendicular to both up to rounding, however nearly parallel they are. The part of v along u is
-/// subtracted, because it would only add its rounding error to the cross product.
-fn common_normal(u: &Vector, v: &Vector) -> Vector {
-    u.cross(&(v - u * (u.dot(v) / u.norm_squared())))
-}
-
-/// The direction from an edge to a vertex, perpendicular to the edge up to rounding even if the vertex is
-/// almost on the edge.
-fn across(p: &Point, edge: [&Point; 2]) -> Vector {
-    let along = edge[1] - edge[0];
-    along.cross(&(p - edge[0]).cross(&along))
+    let mut slab = Slab { normal: separation.normal, width: separation.width };
+    slab.try_directions(kind, points, differences, slack);
+    slab.try_differences(differences, slack);
+    (separation.normal, separation.width) = (slab.normal, slab.width);
 }
 
 /// [`separate`] for differences that are very small, very large or all zero.
@@ -231,7 +153,7 @@ fn across(p: &Point, edge: [&Point; 2]) -> Vector {
 #[inline(never)]
 fn separate_rescaled(kind: PairKind, points: &[Point; 4]) -> Separation {
     let closest = distance::closest(kind, points);
-    let Some(local) = Local::new(kind, points) else {
+    let Some(local) = Local::new(points, kind.vertex_count()) else {
         return undecided(closest.weights);
     };
     let [p0, p1, p2, p3] = &local.points;

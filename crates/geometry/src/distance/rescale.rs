@@ -11,18 +11,18 @@ pub(crate) const MIN_SCALE: f64 = 1e-70;
 pub(crate) const MAX_SCALE: f64 = 1e70;
 
 /// A pair relative to its first vertex, scaled by a power of two to a largest difference near 1.
-pub(crate) struct Local {
-    /// The scaled points; those that the kind does not use are zero.
-    pub(crate) points: [Point; 4],
+pub(crate) struct Local<const N: usize> {
+    /// The scaled points; unused ones are zero.
+    pub(crate) points: [Point; N],
     /// Factors from lengths in `points` to lengths of the input. There are two, because their product may
     /// leave the range of `f64`.
     unscale: [f64; 2],
 }
 
-impl Local {
-    /// `None` where all points coincide.
-    pub(crate) fn new(kind: PairKind, points: &[Point; 4]) -> Option<Self> {
-        let used = &points[..kind.vertex_count()];
+impl<const N: usize> Local<N> {
+    /// The first `used` of the points; `None` where all of them coincide.
+    pub(crate) fn new(points: &[Point; N], used: usize) -> Option<Self> {
+        let used = &points[..used];
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
         // Coordinates are divided by four if differences might overflow.
         let shrink = if largest(&mut used.iter().flat_map(|p| [p.x, p.y, p.z])) > 1e300 { 0.25 } else { 1.0 };
@@ -34,7 +34,7 @@ impl Local {
         }
         // 2^k and 2^-k are both normal numbers for these k.
         let k = -exponent(scale).clamp(-1000, 1000);
-        let mut local = [Point::origin(); 4];
+        let mut local = [Point::origin(); N];
         for (slot, d) in local.iter_mut().zip(differences) {
             slot.coords = d * power_of_two(k);
         }
@@ -71,7 +71,7 @@ pub(super) fn closest_rescaled(
     if !used.iter().all(|p| p.iter().all(|x| x.is_finite())) {
         return Closest { weights, offset: Vector::repeat(f64::NAN), distance: f64::NAN };
     }
-    let Some(local) = Local::new(kind, points) else {
+    let Some(local) = Local::new(points, kind.vertex_count()) else {
         return Closest { weights, offset: Vector::zeros(), distance: 0.0 };
     };
     let closest = core(&local.points);

@@ -14,3 +14,5 @@ mod parry;
 mod sampling;
 /// Certified widths against double-double arithmetic.
 mod slab_width;
+/// Two triangles: exact distances, certified slabs, another implementation.
+mod triangles;

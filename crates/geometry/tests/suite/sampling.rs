@@ -35,7 +35,7 @@ impl Random {
     }
 
     /// Zero, or a vector some orders of magnitude below `size`, down to its rounding.
-    fn speck(&mut self, size: f64) -> Vector {
+    pub fn speck(&mut self, size: f64) -> Vector {
         if self.below(4) == 0 {
             Vector::zeros()
         } else {

@@ -5,7 +5,7 @@ use bowknot_geometry::{HalfSpace, PairKind, Point, Vector, distance, separation}
 
 /// An unevaluated sum of two numbers, good to about 2^-104 of itself (Dekker 1971).
 #[derive(Clone, Copy, Debug)]
-struct Double(f64, f64);
+pub struct Double(f64, f64);
 
 impl Double {
     fn sum(a: f64, b: f64) -> Self {
@@ -51,12 +51,17 @@ fn length(n: &Vector) -> Double {
 }
 
 /// width * |n| + 2^-85 scale <= s, in exact arithmetic.
-fn certified(width: f64, n: &Vector, s: Double, scale: f64) -> bool {
+pub fn certified(width: f64, n: &Vector, s: Double, scale: f64) -> bool {
     length(n).times(width).plus(Double(scale * 2_f64.powi(-85), 0.0)).is_at_most(s)
 }
 
 fn slab(kind: PairKind, points: &[Point; 4], n: &Vector) -> Double {
     let (a, b) = points[..kind.vertex_count()].split_at(kind.side_a());
+    slab_between(a, b, n)
+}
+
+/// min over a of n.p - max over b of n.q.
+pub fn slab_between(a: &[Point], b: &[Point], n: &Vector) -> Double {
     a.iter()
         .flat_map(|p| b.iter().map(move |q| projection(n, p, q)))
         .reduce(|x, y| if x.is_at_most(y) { x } else { y })
