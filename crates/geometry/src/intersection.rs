@@ -72,6 +72,28 @@ pub fn point_on_triangle(point: &Point, triangle: [&Point; 3]) -> bool {
     }
 }
 
+/// How the ray from a point upward, along z, crosses a triangle: 1 where it leaves through the front (from which
+/// the vertices go counterclockwise), -1 where it enters through the front, 0 where it does not meet the
+/// triangle. Decided exactly.
+///
+/// The sum over all triangles of a closed mesh is the winding number of the surface around a point that is not
+/// on it. The ray is moved aside by an infinitesimal (e, e^2, 0), as in "Simulation of simplicity" (Edelsbrunner
+/// and Muecke 1990): so it never passes through an edge, and crosses one of two triangles that share one. The
+/// point must not lie on the triangle.
+pub fn upward_crossing(point: &Point, [a, b, c]: [&Point; 3]) -> i8 {
+    let turns = [moved_turn(a, b, point), moved_turn(b, c, point), moved_turn(c, a, point)];
+    let is_beside = turns[0] == 0 || turns[1] != turns[0] || turns[2] != turns[0];
+    if !is_beside && side(a, b, c, point) == turns[0] { turns[0] } else { 0 }
+}
+
+/// Sign of the turn from a over b to p, seen from above, with p moved by (e, e^2). Zero only for an edge that
+/// projects to a point.
+fn moved_turn(a: &Point, b: &Point, p: &Point) -> i8 {
+    let by = |x: f64, y: f64| i8::from(x > y) - i8::from(x < y);
+    // The derivatives of the area by the coordinates of p: a.y - b.y, then b.x - a.x.
+    [turn(2, a, b, p), by(a.y, b.y), by(b.x, a.x)].into_iter().find(|&sign| sign != 0).unwrap_or(0)
+}
+
 /// Whether a point lies on a closed segment, decided exactly.
 pub fn point_on_edge(point: &Point, edge: [&Point; 2]) -> bool {
     boxes_overlap([point, point], edge) && are_collinear([edge[0], edge[1], point])

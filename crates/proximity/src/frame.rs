@@ -12,7 +12,7 @@ use bowknot_geometry::{Point, Vector};
 pub const UNIT_ROUNDOFF: f32 = f32::EPSILON / 2.0;
 
 /// Coordinates beyond this [m] are treated as not finite: their squares would overflow.
-const MAX_COORDINATE: f64 = 1e15;
+pub const MAX_COORDINATE: f64 = 1e15;
 
 /// A vertex in the local frame: offset from the origin and radius [m]. All four are not-a-number if the input
 /// is not finite; such vertices, and elements with them, are in no pair.

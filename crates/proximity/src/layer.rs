@@ -82,11 +82,11 @@ impl Layer {
 
     /// Rebuilds trees whose order is stale, and refits their boxes; returns how many trees that were.
     pub fn rebuild_stale(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
-        rebuild_stale(&mut self.vertices, local, end)
-            + rebuild_stale(&mut self.edges, local, end)
-            + rebuild_stale(&mut self.triangles, local, end)
-            + rebuild_stale(&mut self.particles, local, end)
-            + rebuild_stale(&mut self.strands, local, end)
+        u32::from(self.vertices.rebuild_stale(local, end))
+            + u32::from(self.edges.rebuild_stale(local, end))
+            + u32::from(self.triangles.rebuild_stale(local, end))
+            + u32::from(self.particles.rebuild_stale(local, end))
+            + u32::from(self.strands.rebuild_stale(local, end))
     }
 
     /// Number of trees that are not empty.
@@ -105,17 +105,4 @@ impl Layer {
 fn build<const V: usize>(tree: &mut Tree<V>, elements: &[(u32, [u32; V])], local: &[LocalVertex]) -> u32 {
     tree.build(elements, local);
     u32::from(!elements.is_empty())
-}
-
-fn rebuild_stale<const V: usize>(
-    tree: &mut Tree<V>,
-    local: &[LocalVertex],
-    end: Option<&[LocalVertex]>,
-) -> u32 {
-    let stale = tree.is_stale();
-    if stale {
-        tree.build(&tree.elements(), local);
-        tree.refit(local, end);
-    }
-    u32::from(stale)
 }

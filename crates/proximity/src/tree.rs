@@ -293,9 +293,15 @@ impl<const V: usize> Tree<V> {
         }
     }
 
-    /// Whether the leaves have grown so much that rebuilding is worth its cost.
-    pub fn is_stale(&self) -> bool {
-        self.extent() > STALE_GROWTH * self.built_extent
+    /// Builds the tree again and refits it if its leaves have grown so much that this is worth its cost; returns
+    /// whether it has.
+    pub fn rebuild_stale(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> bool {
+        let is_stale = self.extent() > STALE_GROWTH * self.built_extent;
+        if is_stale {
+            self.build(&self.elements(), local);
+            self.refit(local, end);
+        }
+        is_stale
     }
 
     fn extent(&self) -> f64 {
