@@ -19,7 +19,7 @@
 //! | [`model`] | [`DynamicsModel`]: masses, elements, patterns; fixed during a run |
 //! | [`params`] | [`DynamicsParams`] |
 //! | [`dynamics`] | [`Dynamics`]: the time step, Newton iterations, the line search |
-//! | [`repulsion`] | [`RepulsionSpring`] |
+//! | [`repulsion`] | [`RepulsionSpring`], [`ContactPotential`] |
 //! | [`observe`] | [`Energies`], momenta, stretch, volumes |
 
 // Results have the same bits on every machine; tests may use the system's functions.
@@ -65,4 +65,4 @@ pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, So
 pub use model::DynamicsModel;
 pub use observe::{ElasticEnergies, Energies};
 pub use params::{DynamicsParams, Environment, HessianFilter, NewtonParams, PreconditionerKind};
-pub use repulsion::{RepulsionSpring, SpringKind};
+pub use repulsion::{ContactForces, ContactLaw, ContactPotential, RepulsionSpring, SpringKind};

@@ -11,16 +11,7 @@ use rayon::prelude::*;
 impl Repulsion {
     /// Linearizes the springs that push, with watched nodes at `x`.
     pub fn linearize(&mut self, x: &[Vector], with_friction: bool) {
-        let mut states = std::mem::take(&mut self.states);
-        states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
-            state.model = [0.0; 3];
-            if state.acts {
-                let (gap, _) = self.gap_and_slip(spring, x);
-                let push = state.push(gap);
-                state.model = [gap, push.force, push.stiffness];
-            }
-        });
-        self.states = states;
+        self.model_pushes(x);
         let pushes = |s: &u32| self.states[*s as usize].pushes();
         let pushing: Vec<u32> = (0..self.springs.len() as u32).filter(pushes).collect();
         let mut linear = std::mem::take(&mut self.linear);
@@ -31,7 +22,22 @@ impl Repulsion {
         self.linear = linear;
     }
 
-    fn linearized(&self, spring: usize, x: &[Vector], with_friction: bool) -> LinearSpring {
+    /// Computes the normal force and stiffness of each spring, with watched nodes at `x`.
+    pub(super) fn model_pushes(&mut self, x: &[Vector]) {
+        let mut states = std::mem::take(&mut self.states);
+        states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
+            state.model = [0.0; 3];
+            if state.acts {
+                let (gap, _) = self.gap_and_slip(spring, x);
+                let push = state.push(gap);
+                state.model = [gap, push.force, push.stiffness];
+            }
+        });
+        self.states = states;
+    }
+
+    /// Force and Hessian of a spring of which [`Self::model_pushes`] has computed the normal force.
+    pub(super) fn linearized(&self, spring: usize, x: &[Vector], with_friction: bool) -> LinearSpring {
         let (state, n) = (&self.states[spring], self.normal(spring, x));
         let [gap, push, k] = state.model;
         let (_, slip) = self.gap_and_slip(spring, x);

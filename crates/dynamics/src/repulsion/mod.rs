@@ -42,14 +42,17 @@
 //! | `linearize` | force and Hessian of each spring |
 //! | `update` | bends of laws and bounds of friction after a solve |
 //! | `energy` | energies |
+//! | `potential` | [`ContactPotential`], for other solvers |
 
 mod energy;
 mod law;
 mod linearize;
+mod potential;
 mod prepare;
 pub(crate) mod spring;
 pub(crate) mod springs;
 mod state;
 mod update;
 
-pub use spring::{RepulsionSpring, SpringKind};
+pub use potential::{ContactForces, ContactPotential};
+pub use spring::{ContactLaw, RepulsionSpring, SpringKind};

@@ -31,7 +31,7 @@ const MAX_BEND: f64 = 0.5;
 
 /// Smallest share of the room at which the stiffness of sticking is taken. Larger: softer sticking of pressed
 /// contacts, which slip farther before they slide. Smaller: stiffer systems.
-const MIN_GRIP_SHARE: f64 = 0.2;
+pub(super) const MIN_GRIP_SHARE: f64 = 0.2;
 
 /// Share of the bound of friction from which on a contact slid in the last time step. Larger: more contacts
 /// are first taken to stick on. Smaller: more are first taken to slide.

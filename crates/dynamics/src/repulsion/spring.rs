@@ -1,6 +1,6 @@
 //! The springs that callers describe contacts by.
 
-use bowknot_geometry::Vector;
+use bowknot_geometry::{PairKind, Point, Separation, Vector};
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
@@ -53,4 +53,57 @@ pub struct RepulsionSpring {
     /// [`crate::Dynamics::contact_forces`]; with zero, a contact that sticks first slips a little in each
     /// time step.
     pub friction_ratio: Vector,
+}
+
+/// The law of a contact, see [`crate::repulsion`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+pub struct ContactLaw {
+    /// See [`RepulsionSpring::stiffness`]. For a [`crate::ContactPotential`] in N/m.
+    pub stiffness: f64,
+    /// Gap from which on nothing acts [m].
+    pub reach: f64,
+    /// Gap at which the force becomes infinite [m], below the reach.
+    pub floor: f64,
+    /// Coefficient of friction mu [1].
+    pub friction: f64,
+}
+
+impl RepulsionSpring {
+    /// The spring of a pair with `separation` at `positions` [m], without friction at the start of the time step.
+    /// `start` are the positions there. Its gap is the distance of the pair, and its gradient that of the
+    /// distance.
+    ///
+    /// # Panics
+    /// If a position is missing.
+    pub fn of_pair(
+        kind: PairKind,
+        mut vertices: [u32; 4],
+        separation: &Separation,
+        law: &ContactLaw,
+        positions: &[Point],
+        start: &[Point],
+    ) -> Self {
+        let weights = separation.signed_weights(kind);
+        // Unused places may hold anything.
+        (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = vertices[0]);
+        let height = |x: &[Point]| -> f64 {
+            (0..4).map(|k| weights[k] * separation.normal.dot(&x[vertices[k] as usize].coords)).sum()
+        };
+        let offset = height(positions) - separation.distance;
+        let ContactLaw { stiffness, reach, floor, friction } = *law;
+        Self {
+            kind: SpringKind::Contact,
+            vertices,
+            weights,
+            normal: separation.normal,
+            offset,
+            reach,
+            floor,
+            start_gap: height(start) - offset,
+            stiffness,
+            friction,
+            friction_ratio: Vector::zeros(),
+        }
+    }
 }

@@ -38,10 +38,19 @@ pub(crate) struct Repulsion {
 impl Repulsion {
     /// Checks the springs and looks up their nodes.
     pub fn new(model: &DynamicsModel, springs: &[RepulsionSpring]) -> Result<Self, StepError> {
+        Self::over(springs, model.vertex_count(), model.node_vertex.len(), |v| model.vertex_node[v as usize])
+    }
+
+    /// Checks springs of so many vertices, and looks up their nodes with `node_of`.
+    pub fn over(
+        springs: &[RepulsionSpring],
+        vertex_count: usize,
+        node_count: usize,
+        node_of: impl Fn(u32) -> u32 + Sync,
+    ) -> Result<Self, StepError> {
         for (spring, s) in springs.iter().enumerate() {
             let refuse = |problem| Err(StepError::Repulsion { spring, problem });
-            if s.vertices.iter().zip(s.weights).any(|(&v, w)| w != 0.0 && v as usize >= model.vertex_count())
-            {
+            if s.vertices.iter().zip(s.weights).any(|(&v, w)| w != 0.0 && v as usize >= vertex_count) {
                 return refuse("it names a vertex that does not exist");
             }
             let numbers = s.weights.iter().chain(s.normal.iter()).chain(s.friction_ratio.iter());
@@ -58,11 +67,11 @@ impl Repulsion {
                 return refuse("a limit of a distance has no friction");
             }
         }
-        let node = |v: u32, w: f64| if w == 0.0 { NO_NODE } else { model.vertex_node[v as usize] };
+        let node = |v: u32, w: f64| if w == 0.0 { NO_NODE } else { node_of(v) };
         let nodes_of = |s: &RepulsionSpring| std::array::from_fn(|k| node(s.vertices[k], s.weights[k]));
         let nodes: Vec<[u32; 4]> = springs.par_iter().with_min_len(CHUNK).map(nodes_of).collect();
         // Which nodes are watched, then the place of each among them.
-        let mut place = vec![NO_NODE; model.node_vertex.len()];
+        let mut place = vec![NO_NODE; node_count];
         nodes.iter().flatten().filter(|node| **node != NO_NODE).for_each(|&node| place[node as usize] = 0);
         let mut watched = Vec::new();
         for (node, place) in (0..).zip(&mut place).filter(|(_, place)| **place != NO_NODE) {
@@ -82,7 +91,7 @@ impl Repulsion {
             anchors: vec![Vector::zeros(); count],
             states: vec![SpringState::default(); count],
             majorizes_friction: false,
-            linear: LinearSprings::new(model.node_vertex.len()),
+            linear: LinearSprings::new(node_count),
         })
     }
 

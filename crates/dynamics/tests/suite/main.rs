@@ -4,6 +4,7 @@ mod air;
 mod backend;
 mod common;
 mod physics;
+mod potential;
 mod repulsion;
 mod solids;
 mod strands;

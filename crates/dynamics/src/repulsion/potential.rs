@@ -1,0 +1,158 @@
+//! The potential of contacts and friction by itself, for solvers other than [`crate::Dynamics`].
+
+use super::law::NormalLaw;
+use super::prepare::MIN_GRIP_SHARE;
+use super::spring::RepulsionSpring;
+use super::springs::Repulsion;
+use super::state::SpringState;
+use crate::error::StepError;
+use crate::linear::springs::LinearSpring;
+use bowknot_geometry::{Point, Vector};
+use nalgebra::Matrix3;
+
+/// The force of one contact on the side that its normal points to; the other side has the opposite.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactForces {
+    /// Along the normal [N], at least 0 for contacts.
+    pub normal: f64,
+    /// Across it [N].
+    pub friction: Vector,
+}
+
+/// The potential of contacts at a state, as a function of the positions: energy, gradient, Hessian.
+///
+/// The law is that of [`crate::repulsion`] without the drag, with stiffnesses in N/m: they do not follow from
+/// masses and materials. Each spring counts; where several pairs have the same closest points, their
+/// stiffnesses add up. `bowknot_constraints::Facing::contact_share` tells how much of a contact a pair is.
+///
+/// **Normals, weights and bounds of friction stay** as they were found at the positions that the potential was
+/// made for, so that energy, gradient and Hessian belong together. There the energy and gradient are those of the
+/// distances. Make a new potential for the next iterate. The Hessian has no negative eigenvalue; it lacks the
+/// curvature of the distances, which is indefinite.
+///
+/// **Friction** follows from the slip since the start of the time step. It is bounded by mu times the normal force
+/// at the positions that the potential was made for. Slip up to that bound is elastic; the stiffness is that of
+/// the normal force, but not above that at a fifth of the room. With [`RepulsionSpring::friction_ratio`] it begins
+/// with the friction at the start.
+///
+/// ```
+/// use bowknot_dynamics::geometry::{PairKind, Point, Vector, separation};
+/// use bowknot_dynamics::{ContactLaw, ContactPotential, RepulsionSpring};
+///
+/// // A vertex that has slid along x, 1 mm above a triangle.
+/// let start = [[0.2, 0.2, 0.001], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
+/// let mut x = start;
+/// x[0].x += 0.01;
+/// let separation = separation::separate(PairKind::VertexTriangle, &x);
+/// let law = ContactLaw { stiffness: 100.0, reach: 0.002, floor: 0.0, friction: 0.5 };
+/// let spring =
+///     RepulsionSpring::of_pair(PairKind::VertexTriangle, [0, 1, 2, 3], &separation, &law, &x, &start);
+/// let mut potential = ContactPotential::new(&[spring], &x, &start)?;
+///
+/// // Half of the room is left: k r (1 - 1/2) / (1/2)^2.
+/// let forces = potential.forces(&x)[0];
+/// assert!((forces.normal - 0.4).abs() < 1e-12);
+/// assert!((forces.friction + 0.2 * Vector::x()).norm() < 1e-12);
+///
+/// let gradient = potential.gradient(&x);
+/// assert!((gradient[0] + Vector::new(-0.2, 0.0, 0.4)).norm() < 1e-12);
+/// assert!(gradient.iter().sum::<Vector>().norm() < 1e-12);
+/// assert_eq!(potential.hessian(&x).len(), 16);
+/// # Ok::<(), bowknot_dynamics::StepError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ContactPotential {
+    repulsion: Repulsion,
+    vertex_count: usize,
+}
+
+impl ContactPotential {
+    /// The potential of `springs` at positions `x` [m], with slip since the positions `start` [m]. Both have one
+    /// entry per vertex.
+    ///
+    /// # Errors
+    /// If a spring names a vertex that does not exist, or has a value out of its range; see [`StepError`].
+    ///
+    /// # Panics
+    /// If `x` and `start` have different lengths.
+    pub fn new(springs: &[RepulsionSpring], x: &[Point], start: &[Point]) -> Result<Self, StepError> {
+        assert_eq!(start.len(), x.len(), "one position per vertex");
+        let repulsion = Repulsion::over(springs, x.len(), x.len(), |vertex| vertex)?;
+        let mut potential = Self { repulsion, vertex_count: x.len() };
+        let watched = potential.watched(x);
+        let repulsion = &mut potential.repulsion;
+        repulsion.anchor(start);
+        for (spring, s) in springs.iter().enumerate() {
+            let (gap, _) = repulsion.gap_and_slip(spring, &watched);
+            let law = NormalLaw::new(s.stiffness, s.reach, s.floor, s.start_gap);
+            let ratio = s.friction_ratio - s.normal * s.normal.dot(&s.friction_ratio);
+            repulsion.states[spring] = SpringState {
+                law,
+                acts: s.stiffness > 0.0,
+                grip: law.tangent(gap, MIN_GRIP_SHARE),
+                tau: ratio * law.force_at_start(),
+                bound: s.friction * law.at(gap).force,
+                ..SpringState::default()
+            };
+        }
+        Ok(potential)
+    }
+
+    /// The energy [J]: 0 without contact, and finite however near contacts are.
+    ///
+    /// # Panics
+    /// Here and below, if there is another number of positions than [`Self::new`] got.
+    pub fn energy(&self, x: &[Point]) -> f64 {
+        self.repulsion.energy(&self.watched(x))
+    }
+
+    /// The gradient [N], minus the force, one entry per vertex.
+    pub fn gradient(&mut self, x: &[Point]) -> Vec<Vector> {
+        let mut gradient = vec![Vector::zeros(); self.vertex_count];
+        for spring in self.linearized(x) {
+            for (&vertex, weight) in spring.nodes.iter().zip(spring.weights).filter(|(_, w)| *w != 0.0) {
+                gradient[vertex as usize] -= spring.force * weight;
+            }
+        }
+        gradient
+    }
+
+    /// The blocks of the Hessian [N/m], each with its row and its column, by vertex. Blocks of one place add up.
+    pub fn hessian(&mut self, x: &[Point]) -> Vec<(u32, u32, Matrix3<f64>)> {
+        let mut blocks = Vec::new();
+        for spring in self.linearized(x) {
+            let entries =
+                || spring.nodes.into_iter().zip(spring.weights).filter(|(_, weight)| *weight != 0.0);
+            for (row, a) in entries() {
+                blocks.extend(entries().map(|(column, b)| (row, column, spring.hessian * (a * b))));
+            }
+        }
+        blocks
+    }
+
+    /// The forces of each spring.
+    pub fn forces(&self, x: &[Point]) -> Vec<ContactForces> {
+        let watched = self.watched(x);
+        let of_spring = |(spring, state): (usize, &SpringState)| {
+            let (gap, slip) = self.repulsion.gap_and_slip(spring, &watched);
+            let friction = state.rub(&slip, state.bound).force;
+            ContactForces { normal: state.push(gap).force, friction }
+        };
+        self.repulsion.states.iter().enumerate().map(of_spring).collect()
+    }
+
+    /// The springs that act, linearized.
+    fn linearized(&mut self, x: &[Point]) -> Vec<LinearSpring> {
+        let watched = self.watched(x);
+        self.repulsion.model_pushes(&watched);
+        let repulsion = &self.repulsion;
+        let acting = (0..repulsion.states.len()).filter(|&spring| repulsion.states[spring].acts);
+        acting.map(|spring| repulsion.linearized(spring, &watched, true)).collect()
+    }
+
+    /// The positions of the vertices that springs act on.
+    fn watched(&self, x: &[Point]) -> Vec<Vector> {
+        assert_eq!(x.len(), self.vertex_count, "one position per vertex");
+        self.repulsion.watched().iter().map(|&vertex| x[vertex as usize].coords).collect()
+    }
+}
