@@ -13,7 +13,7 @@ mod ray;
 use crate::frame::{self, LocalVertex};
 use crate::tree::Tree;
 use bowknot_geometry::{Point, Vector, VertexOutOfRange};
-use descend::Posed;
+use descend::Placed;
 use rayon::prelude::*;
 
 pub use closest::SurfacePoint;
@@ -22,7 +22,7 @@ pub use ray::RayHit;
 /// Below this number of points a thread does not share its work.
 const MIN_POINTS: usize = 64;
 
-/// Why a mesh cannot be posed.
+/// Why a mesh is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshQueryError {
@@ -42,7 +42,7 @@ pub enum MeshQueryError {
 /// A triangle mesh at some positions, for queries: the closest point of the surface, the first triangle that a
 /// ray meets, whether a point is inside.
 ///
-/// Results depend on the input alone, not on earlier poses or the number of threads; of equals the triangle with
+/// Results depend on the input alone, not on earlier positions or the number of threads; of equals the triangle with
 /// the smallest index is taken. Triangles with a vertex that is not finite or beyond 1e15 m are never found.
 /// Exact decisions need coordinates that are zero or at least 1e-90 m, see [`bowknot_geometry::intersection`].
 ///
@@ -62,7 +62,7 @@ pub enum MeshQueryError {
 /// assert_eq!(hit.map(|hit| (hit.triangle, hit.t)), Some((0, 0.25)));
 ///
 /// assert_eq!(mesh.is_inside(&Point::new(0.1, 0.1, 0.1)), Some(true));
-/// mesh.pose(&corners.map(|p| p + Vector::x()))?;
+/// mesh.refit(&corners.map(|p| p + Vector::x()))?;
 /// assert_eq!(mesh.is_inside(&Point::new(0.1, 0.1, 0.1)), Some(false));
 /// # Ok::<(), bowknot_proximity::MeshQueryError>(())
 /// ```
@@ -107,7 +107,7 @@ impl MeshQuery {
     ///
     /// # Errors
     /// If there is another number of positions; the mesh then stays.
-    pub fn pose(&mut self, positions: &[Point]) -> Result<(), MeshQueryError> {
+    pub fn refit(&mut self, positions: &[Point]) -> Result<(), MeshQueryError> {
         let (given, vertices) = (positions.len(), self.positions.len());
         if given != vertices {
             return Err(MeshQueryError::PositionCount { given, vertices });
@@ -129,8 +129,8 @@ impl MeshQuery {
         self.is_placed = self.used.iter().all(|&v| !self.local[v as usize][0].is_nan());
     }
 
-    fn posed(&self) -> Posed<'_> {
-        Posed { tree: &self.tree, positions: &self.positions, origin: self.origin }
+    fn placed(&self) -> Placed<'_> {
+        Placed { tree: &self.tree, positions: &self.positions, origin: self.origin }
     }
 
     /// The point of the surface that is closest to `point`, if it is no farther away than `max_distance` [m],
@@ -139,7 +139,7 @@ impl MeshQuery {
     /// The triangle is the one of least computed distance, which is off by at most 8 rounding units (2^-53) of
     /// the largest coordinate difference between it and the point.
     pub fn closest_point(&self, point: &Point, max_distance: f64) -> Option<SurfacePoint> {
-        closest::closest_point(self.posed(), point, max_distance)
+        closest::closest_point(self.placed(), point, max_distance)
     }
 
     /// [`Self::closest_point`] of many points, on all threads of the rayon pool.
@@ -157,7 +157,7 @@ impl MeshQuery {
     /// vertex between triangles. `t` is rounded, and decides which triangle is the first and whether it is within
     /// `max`: where two are met within rounding of each other, either may be taken, always the same one.
     pub fn cast_ray(&self, origin: &Point, direction: &Vector, max: f64) -> Option<RayHit> {
-        ray::cast_ray(self.posed(), origin, direction, max)
+        ray::cast_ray(self.placed(), origin, direction, max)
     }
 
     /// Whether a closed surface contains the point or winds around it, decided exactly.
@@ -167,7 +167,7 @@ impl MeshQuery {
     /// parts of one orientation overlap, the inside is that of their union; a part of the other orientation
     /// inside another is a hole.
     pub fn is_inside(&self, point: &Point) -> Option<bool> {
-        if self.is_closed && self.is_placed { inside::is_inside(self.posed(), point) } else { None }
+        if self.is_closed && self.is_placed { inside::is_inside(self.placed(), point) } else { None }
     }
 
     /// Whether there are triangles, and each edge of one is passed as often in one direction as in the other: the

@@ -11,19 +11,6 @@ use rayon::prelude::*;
 impl Repulsion {
     /// Linearizes the springs that push, with watched nodes at `x`.
     pub fn linearize(&mut self, x: &[Vector], with_friction: bool) {
-        self.model_pushes(x);
-        let pushes = |s: &u32| self.states[*s as usize].pushes();
-        let pushing: Vec<u32> = (0..self.springs.len() as u32).filter(pushes).collect();
-        let mut linear = std::mem::take(&mut self.linear);
-        linear.set(|springs| {
-            let linearized = |&s: &u32| self.linearized(s as usize, x, with_friction);
-            pushing.par_iter().map(linearized).collect_into_vec(springs);
-        });
-        self.linear = linear;
-    }
-
-    /// Computes the normal force and stiffness of each spring, with watched nodes at `x`.
-    pub(super) fn model_pushes(&mut self, x: &[Vector]) {
         let mut states = std::mem::take(&mut self.states);
         states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
             state.model = [0.0; 3];
@@ -34,12 +21,28 @@ impl Repulsion {
             }
         });
         self.states = states;
+        let pushes = |s: &u32| self.states[*s as usize].pushes();
+        let pushing: Vec<u32> = (0..self.springs.len() as u32).filter(pushes).collect();
+        let mut linear = std::mem::take(&mut self.linear);
+        linear.set(|springs| {
+            let linearized = |&s: &u32| {
+                let model = self.states[s as usize].model;
+                self.linearized(s as usize, model, x, with_friction)
+            };
+            pushing.par_iter().map(linearized).collect_into_vec(springs);
+        });
+        self.linear = linear;
     }
 
-    /// Force and Hessian of a spring of which [`Self::model_pushes`] has computed the normal force.
-    pub(super) fn linearized(&self, spring: usize, x: &[Vector], with_friction: bool) -> LinearSpring {
+    /// A spring with a normal force linearized to `model`, see [`super::state::SpringState::model`].
+    pub(super) fn linearized(
+        &self,
+        spring: usize,
+        [gap, push, k]: [f64; 3],
+        x: &[Vector],
+        with_friction: bool,
+    ) -> LinearSpring {
         let (state, n) = (&self.states[spring], self.normal(spring, x));
-        let [gap, push, k] = state.model;
         let (_, slip) = self.gap_and_slip(spring, x);
         let along_normal = n * n.transpose();
         let across = Matrix3::identity() - along_normal;

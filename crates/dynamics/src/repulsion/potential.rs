@@ -1,14 +1,13 @@
 //! The potential of contacts and friction by itself, for solvers other than [`crate::Dynamics`].
 
-use super::law::NormalLaw;
+use super::law::{NormalLaw, Push};
 use super::prepare::MIN_GRIP_SHARE;
 use super::spring::RepulsionSpring;
 use super::springs::Repulsion;
 use super::state::SpringState;
+use crate::dynamics::MatrixBlocks;
 use crate::error::StepError;
-use crate::linear::springs::LinearSpring;
 use bowknot_geometry::{Point, Vector};
-use nalgebra::Matrix3;
 
 /// The force of one contact on the side that its normal points to; the other side has the opposite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,7 +46,7 @@ pub struct ContactForces {
 /// let law = ContactLaw { stiffness: 100.0, reach: 0.002, floor: 0.0, friction: 0.5 };
 /// let spring =
 ///     RepulsionSpring::of_pair(PairKind::VertexTriangle, [0, 1, 2, 3], &separation, &law, &x, &start);
-/// let mut potential = ContactPotential::new(&[spring], &x, &start)?;
+/// let potential = ContactPotential::new(&[spring], &x, &start)?;
 ///
 /// // Half of the room is left: k r (1 - 1/2) / (1/2)^2.
 /// let forces = potential.forces(&x)[0];
@@ -107,24 +106,32 @@ impl ContactPotential {
     }
 
     /// The gradient [N], minus the force, one entry per vertex.
-    pub fn gradient(&mut self, x: &[Point]) -> Vec<Vector> {
+    pub fn gradient(&self, x: &[Point]) -> Vec<Vector> {
+        let watched = self.watched(x);
         let mut gradient = vec![Vector::zeros(); self.vertex_count];
-        for spring in self.linearized(x) {
-            for (&vertex, weight) in spring.nodes.iter().zip(spring.weights).filter(|(_, w)| *w != 0.0) {
-                gradient[vertex as usize] -= spring.force * weight;
+        for spring in self.acting() {
+            let ContactForces { normal, friction } = self.force(spring, &watched);
+            let force = self.repulsion.normal(spring, &watched) * normal + friction;
+            let s = &self.repulsion.springs[spring];
+            for (&vertex, weight) in s.vertices.iter().zip(s.weights).filter(|(_, weight)| *weight != 0.0) {
+                gradient[vertex as usize] -= force * weight;
             }
         }
         gradient
     }
 
     /// The blocks of the Hessian [N/m], each with its row and its column, by vertex. Blocks of one place add up.
-    pub fn hessian(&mut self, x: &[Point]) -> Vec<(u32, u32, Matrix3<f64>)> {
+    pub fn hessian(&self, x: &[Point]) -> MatrixBlocks {
+        let watched = self.watched(x);
         let mut blocks = Vec::new();
-        for spring in self.linearized(x) {
+        for spring in self.acting() {
+            let (gap, _) = self.repulsion.gap_and_slip(spring, &watched);
+            let Push { force, stiffness } = self.repulsion.states[spring].push(gap);
+            let linear = self.repulsion.linearized(spring, [gap, force, stiffness], &watched, true);
             let entries =
-                || spring.nodes.into_iter().zip(spring.weights).filter(|(_, weight)| *weight != 0.0);
+                || linear.nodes.into_iter().zip(linear.weights).filter(|(_, weight)| *weight != 0.0);
             for (row, a) in entries() {
-                blocks.extend(entries().map(|(column, b)| (row, column, spring.hessian * (a * b))));
+                blocks.extend(entries().map(|(column, b)| (row, column, linear.hessian * (a * b))));
             }
         }
         blocks
@@ -133,21 +140,18 @@ impl ContactPotential {
     /// The forces of each spring.
     pub fn forces(&self, x: &[Point]) -> Vec<ContactForces> {
         let watched = self.watched(x);
-        let of_spring = |(spring, state): (usize, &SpringState)| {
-            let (gap, slip) = self.repulsion.gap_and_slip(spring, &watched);
-            let friction = state.rub(&slip, state.bound).force;
-            ContactForces { normal: state.push(gap).force, friction }
-        };
-        self.repulsion.states.iter().enumerate().map(of_spring).collect()
+        (0..self.repulsion.springs.len()).map(|spring| self.force(spring, &watched)).collect()
     }
 
-    /// The springs that act, linearized.
-    fn linearized(&mut self, x: &[Point]) -> Vec<LinearSpring> {
-        let watched = self.watched(x);
-        self.repulsion.model_pushes(&watched);
-        let repulsion = &self.repulsion;
-        let acting = (0..repulsion.states.len()).filter(|&spring| repulsion.states[spring].acts);
-        acting.map(|spring| repulsion.linearized(spring, &watched, true)).collect()
+    fn force(&self, spring: usize, watched: &[Vector]) -> ContactForces {
+        let state = &self.repulsion.states[spring];
+        let (gap, slip) = self.repulsion.gap_and_slip(spring, watched);
+        ContactForces { normal: state.push(gap).force, friction: state.rub(&slip, state.bound).force }
+    }
+
+    /// The springs that have any stiffness.
+    fn acting(&self) -> impl Iterator<Item = usize> {
+        (0..self.repulsion.springs.len()).filter(|&spring| self.repulsion.states[spring].acts)
     }
 
     /// The positions of the vertices that springs act on.

@@ -80,8 +80,7 @@ fn gradient_and_hessian_are_derivatives_where_contacts_stick_and_slide() {
         let way = [1e-3, 0.2][i % 2];
         let start: Vec<Point> = x.iter().map(|p| p + vector(&mut random, way)).collect();
         let ratio = vector(&mut random, 0.1);
-        let mut potential =
-            ContactPotential::new(&[spring(kind, &x, &start, ratio)], &x, &start).expect("valid");
+        let potential = ContactPotential::new(&[spring(kind, &x, &start, ratio)], &x, &start).expect("valid");
         // Not only at the state that it was made for.
         let at: Vec<Point> = x.iter().map(|p| p + vector(&mut random, 0.01)).collect();
         let forces = potential.forces(&at)[0];

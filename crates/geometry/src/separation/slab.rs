@@ -31,7 +31,7 @@ pub(super) fn smallest_dot(normal: &Vector, differences: &[Vector]) -> f64 {
         .fold(f64::INFINITY, |smallest, x| if smallest < x { smallest } else { x })
 }
 
-/// v / |v| with a length within 5 u of 1, given |v| as [`distance::norm`] computes it.
+/// v / |v| with a length within 5 u of 1, given |v| as `distance::norm` computes it.
 #[inline(always)]
 pub(super) fn unit(v: &Vector, norm: f64) -> Option<Vector> {
     // Shorter vectors could overflow the reciprocal, and their squares have lost bits.

@@ -18,12 +18,12 @@ use crate::point::{Point, Vector};
 pub struct TriangleSeparation {
     /// Whether the closed triangles share a point, decided exactly.
     pub intersect: bool,
-    /// Unit direction (to rounding) from triangle *b* to triangle *a*.
+    /// Unit direction (to rounding) from triangle *b* to triangle *a*. Where they intersect, it has no meaning.
     pub normal: Vector,
     /// Barycentric weights of the closest points over the vertices of *a* and of *b*, each in [0, 1]; those of a
     /// triangle sum to 1 up to rounding. Where the triangles intersect, those of a common point.
     pub weights: [[f64; 3]; 2],
-    /// Computed distance of the closest points [m], off by at most 8 rounding units (2^-53) times the largest
+    /// Computed distance of the closest points [m], off by at most 40 rounding units (2^-53) times the largest
     /// coordinate difference of the six vertices; 0 where the triangles intersect.
     pub distance: f64,
     /// Certified width of the slab between the triangles along `normal` [m]: at most the true distance. Where
@@ -141,13 +141,15 @@ const PAIRS: [(PairKind, [usize; 4]); 15] = {
     ]
 };
 
+/// Multiple of the slack that a distance may exceed the certified width by and count as the least. The slack is 20
+/// or 32 rounding units of the largest difference.
+const NEAREST: f64 = 1.2;
+
 /// The closest points so far.
 #[derive(Clone, Copy)]
 struct Nearest {
     /// Over the six points.
     weights: [f64; 6],
-    /// The point of *a* minus that of *b*.
-    offset: Vector,
     distance: f64,
 }
 
@@ -158,26 +160,29 @@ fn separate(
     slack: f64,
     meet: impl Fn() -> bool,
 ) -> TriangleSeparation {
-    let mut nearest = Nearest { weights: [0.0; 6], offset: Vector::zeros(), distance: f64::INFINITY };
+    let mut nearest = Nearest { weights: [0.0; 6], distance: f64::INFINITY };
+    let mut slab = Slab { normal: Vector::z(), width: f64::NEG_INFINITY };
     for (kind, places) in &PAIRS {
         let closest = distance::closest(*kind, &places.map(|place| points[place]));
         if closest.distance < nearest.distance {
             let exchanged = places[0] > 2;
             let offset = if exchanged { -closest.offset } else { closest.offset };
-            nearest = Nearest { weights: [0.0; 6], offset, distance: closest.distance };
+            nearest = Nearest { weights: [0.0; 6], distance: closest.distance };
             places.iter().zip(closest.weights).for_each(|(&place, w)| nearest.weights[place] = w);
+            let normal = unit(&offset, closest.distance).unwrap_or(Vector::z());
+            slab = Slab { normal, width: smallest_dot(&normal, differences) - slack };
+            if closest.distance <= slab.width + NEAREST * slack {
+                break;
+            }
         }
     }
-    let mut slab = Slab { normal: Vector::z(), width: f64::NEG_INFINITY };
-    if let Some(normal) = unit(&nearest.offset, nearest.distance) {
-        slab = Slab { normal, width: smallest_dot(&normal, differences) - slack };
-    }
     let mut intersect = false;
-    if !(slab.width >= MIN_WIDTH_RATIO * nearest.distance) {
-        try_all_directions(points, differences, slack, &mut slab);
+    if slab.width < MIN_WIDTH_RATIO * nearest.distance {
         intersect = slab.width <= 0.0 && meet();
         if intersect {
             nearest = common_point(points, nearest);
+        } else {
+            try_all_directions(points, differences, slack, &mut slab);
         }
     }
     let [a0, a1, a2, b0, b1, b2] = nearest.weights;
@@ -221,7 +226,7 @@ fn common_point(points: &[Point; 6], mut nearest: Nearest) -> Nearest {
             let passage = Point::from(p + (points[end] - points[start]) * t);
             let closest = distance::vertex_triangle(&passage, triangle.each_ref());
             if closest.distance < nearest.distance {
-                nearest = Nearest { weights: [0.0; 6], offset: closest.offset, distance: closest.distance };
+                nearest = Nearest { weights: [0.0; 6], distance: closest.distance };
                 (nearest.weights[start], nearest.weights[end]) = (1.0 - t, t);
                 face.iter().zip(&closest.weights[1..]).for_each(|(&place, w)| nearest.weights[place] = *w);
             }

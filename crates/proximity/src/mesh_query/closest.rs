@@ -2,13 +2,13 @@
 //!
 //! **Why the result depends on the input alone.** It is the triangle of least computed distance, of equals the
 //! first, whatever the order of the tree. A box is left out only if its bound exceeds the least distance so far.
-//! The bound is below the true distance of every triangle in the box by at least 4 u m + 2 u d, with u = 2^-24,
+//! The bound is below the true distance of every triangle in the box by at least 4 u m + u d, with u = 2^-24,
 //! the largest local coordinate m of the triangle and the bound d: the boxes are that much too large (see
 //! `tree.rs`), and `SHRINK` takes 8 u of the square, of which rounding may use 6 u. That is far more than the
 //! error of a computed distance, 8 * 2^-53 of the pair's size. So a triangle that is left out has a larger
 //! computed distance.
 
-use super::descend::{Posed, Probe, descend};
+use super::descend::{Placed, Probe, descend};
 use super::local_point::local_box;
 use crate::frame::UNIT_ROUNDOFF;
 use crate::min_max::larger;
@@ -32,7 +32,7 @@ pub struct SurfacePoint {
 const SHRINK: f32 = 1.0 - 8.0 * UNIT_ROUNDOFF;
 
 struct Nearest<'a> {
-    mesh: Posed<'a>,
+    mesh: Placed<'a>,
     point: Point,
     /// A box around the point, in the local frame.
     low: [f32; 3],
@@ -44,7 +44,7 @@ struct Nearest<'a> {
 }
 
 /// See [`super::MeshQuery::closest_point`].
-pub fn closest_point(mesh: Posed<'_>, point: &Point, max_distance: f64) -> Option<SurfacePoint> {
+pub fn closest_point(mesh: Placed<'_>, point: &Point, max_distance: f64) -> Option<SurfacePoint> {
     let [low, high] = local_box(point, &mesh.origin)?;
     let squared = square_up(max_distance);
     let mut nearest = Nearest { mesh, point: *point, low, high, distance: max_distance, squared, best: None };

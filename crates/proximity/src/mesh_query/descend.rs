@@ -5,7 +5,7 @@ use bowknot_geometry::Point;
 
 /// A mesh at some positions, with its tree.
 #[derive(Clone, Copy)]
-pub struct Posed<'a> {
+pub struct Placed<'a> {
     pub tree: &'a Tree<3>,
     /// Of all vertices [m].
     pub positions: &'a [Point],
@@ -13,7 +13,7 @@ pub struct Posed<'a> {
     pub origin: Point,
 }
 
-impl Posed<'_> {
+impl Placed<'_> {
     /// The corners of a triangle.
     pub fn corners(&self, vertices: [u32; 3]) -> [&Point; 3] {
         vertices.map(|v| &self.positions[v as usize])

@@ -1,13 +1,13 @@
 //! Whether a point is inside of a closed mesh: the exact winding number.
 
-use super::descend::{Posed, Probe, descend};
+use super::descend::{Placed, Probe, descend};
 use super::local_point::local_box;
 use crate::min_max::larger;
 use crate::tree::{LANES, Node};
 use bowknot_geometry::{Point, intersection};
 
 struct Column<'a> {
-    mesh: Posed<'a>,
+    mesh: Placed<'a>,
     point: &'a Point,
     /// A box around the point, in the local frame.
     low: [f32; 3],
@@ -17,7 +17,7 @@ struct Column<'a> {
 }
 
 /// Whether the surface winds around the point, or contains it; `None` for a point without a place.
-pub fn is_inside(mesh: Posed<'_>, point: &Point) -> Option<bool> {
+pub fn is_inside(mesh: Placed<'_>, point: &Point) -> Option<bool> {
     let [low, high] = local_box(point, &mesh.origin)?;
     let mut column = Column { mesh, point, low, high, winding: 0, on_surface: false };
     descend(mesh.tree, &mut column);

@@ -9,7 +9,7 @@
 //! is limited to where the segment passes the box of the triangle. So a box that is left out has no hit that
 //! comes before the best, and the result does not depend on the order of the tree.
 
-use super::descend::{Posed, Probe, descend};
+use super::descend::{Placed, Probe, descend};
 use crate::frame::MAX_COORDINATE;
 use crate::min_max::{larger, smaller};
 use crate::tree::{LANES, Node};
@@ -51,7 +51,7 @@ struct Segment {
 }
 
 struct First<'a> {
-    mesh: Posed<'a>,
+    mesh: Placed<'a>,
     segment: Segment,
     /// The largest place of interest on the segment, in [0, 1] if there is a hit.
     place: f64,
@@ -59,7 +59,7 @@ struct First<'a> {
 }
 
 /// See [`super::MeshQuery::cast_ray`].
-pub fn cast_ray(mesh: Posed<'_>, origin: &Point, direction: &Vector, max: f64) -> Option<RayHit> {
+pub fn cast_ray(mesh: Placed<'_>, origin: &Point, direction: &Vector, max: f64) -> Option<RayHit> {
     let local = origin - mesh.origin;
     let [low, high] = mesh.tree.bounds().map(|corner| Vector::from(corner.map(f64::from)));
     // An upper bound of the distance of the farthest point of the mesh.
@@ -118,7 +118,8 @@ impl First<'_> {
         let heights = [normal.dot(&from_start), normal.dot(&from_end)];
         let drop = heights[0] - heights[1];
         let mut place = heights[0] / drop;
-        if !(drop.abs() > NEARLY_FLAT * normal.norm() * (from_start.norm() + from_end.norm())) {
+        let crosses = drop.abs() > NEARLY_FLAT * normal.norm() * (from_start.norm() + from_end.norm());
+        if !crosses {
             place = self.first_place_in_plane(corners).unwrap_or(place);
         }
         // Of the triangle's own box: a part of those in the tree.

@@ -79,7 +79,7 @@ fn closest_of_all(x: &[Point], triangles: &[[u32; 3]], point: &Point) -> (u32, f
 }
 
 #[test]
-fn closest_points_are_those_of_all_triangles_whatever_was_posed_before() {
+fn closest_points_are_those_of_all_triangles_whatever_positions_were_before() {
     let mut random = Rng::with_seed(1);
     for (size, shift) in [(1.0, 0.0), (1e-6, 0.0), (1e6, 0.0), (1.0, 1e5), (1e-3, 10.0)] {
         let (x, triangles) = ball(20, 30, &Vector::zeros(), &mut random);
@@ -88,8 +88,8 @@ fn closest_points_are_those_of_all_triangles_whatever_was_posed_before() {
         };
         let (start, end) = (place(&x), place(&ball(20, 30, &Vector::x(), &mut random).0));
         let mut mesh = MeshQuery::new(&start, &triangles).expect("valid");
-        mesh.pose(&place(&x.iter().rev().copied().collect::<Vec<_>>())).expect("valid");
-        mesh.pose(&end).expect("valid");
+        mesh.refit(&place(&x.iter().rev().copied().collect::<Vec<_>>())).expect("valid");
+        mesh.refit(&end).expect("valid");
         let fresh = MeshQuery::new(&end, &triangles).expect("valid");
         let mut points = Vec::new();
         for _ in 0..300 {
@@ -192,7 +192,7 @@ fn inside_is_what_the_cells_say_on_faces_edges_and_vertices_too() {
     for shear in [0.0, 0.25] {
         // Multiples of powers of two: the sheared cells are exact.
         let place = |p: [f64; 3]| Point::new(p[0] + shear * p[2], p[1] + shear * p[0], p[2]);
-        mesh.pose(&x.iter().map(|p| place([p.x, p.y, p.z])).collect::<Vec<_>>()).expect("valid");
+        mesh.refit(&x.iter().map(|p| place([p.x, p.y, p.z])).collect::<Vec<_>>()).expect("valid");
         let mut seen = [0; 2];
         for i in 0..24 * 24 * 24 {
             let half = [i / 576, i / 24 % 24, i % 24].map(|k| k - 1);
@@ -218,7 +218,7 @@ fn inside_is_what_the_cells_say_on_faces_edges_and_vertices_too() {
     // A mesh with a border has no inside, and neither has one without a place.
     assert_eq!(MeshQuery::new(&x, &triangles[1..]).expect("valid").is_inside(&point), None);
     x[triangles[0][0] as usize].y = f64::NAN;
-    mesh.pose(&x).expect("valid");
+    mesh.refit(&x).expect("valid");
     assert_eq!(mesh.is_inside(&point), None);
 }
 
@@ -271,6 +271,6 @@ fn input_without_a_place_finds_nothing() {
         assert_eq!(mesh.cast_ray(&point, &(Vector::z() * direction), all), None);
     }
     assert!(mesh.cast_ray(&point, &(Vector::z() * -1e300), all).is_some());
-    assert_eq!(mesh.pose(&corners[1..]), Err(MeshQueryError::PositionCount { given: 3, vertices: 4 }));
+    assert_eq!(mesh.refit(&corners[1..]), Err(MeshQueryError::PositionCount { given: 3, vertices: 4 }));
     assert!(matches!(MeshQuery::new(&corners, &[[0, 1, 4]]), Err(MeshQueryError::Vertex(_))));
 }
