@@ -1,4 +1,4 @@
-use crate::integer::{Int3, distance_squared, edge_meets_triangle};
+use crate::integer::{Int3, cross, distance_squared, dot, edge_meets_triangle, sub};
 use crate::sampling::Random;
 use bowknot_geometry::{PairKind, Point, intersection};
 
@@ -70,4 +70,38 @@ fn points_and_edges_meet_where_their_exact_distance_is_zero() {
         }
     }
     assert!(met.iter().all(|&m| m > 10_000), "{met:?}");
+}
+
+#[test]
+fn crossings_of_a_tetrahedron_wind_around_its_inside_alone() {
+    let mut random = Random::new(25);
+    let mut seen = [0; 3];
+    for i in 0..400_000 {
+        // Coarse grids: rays pass through edges and vertices all the time.
+        let range = [3, 4, 6][i % 3];
+        let mut place = || [0; 3].map(|_: i32| random.below(range) as i128);
+        let (corners, point) = ([place(), place(), place(), place()], place());
+        let volume = |[a, b, c, d]: [Int3; 4]| dot(sub(a, d), cross(sub(b, d), sub(c, d))).signum();
+        let whole = volume(corners);
+        let parts = [0, 1, 2, 3].map(|k: usize| {
+            let mut part = corners;
+            part[k] = point;
+            volume(part)
+        });
+        if whole == 0 || !parts.contains(&-whole) && parts.contains(&0) {
+            // Flat, or the point is on the surface.
+            continue;
+        }
+        let inside = parts == [whole; 4];
+        let to_point = if i % 2 == 0 { as_they_are } else { far_away };
+        let [a, b, c, d] = corners.map(to_point);
+        let at = to_point(point);
+        let faces = [[&a, &b, &c], [&a, &c, &d], [&a, &d, &b], [&b, &d, &c]];
+        let winding: i8 = faces.iter().map(|face| intersection::upward_crossing(&at, *face)).sum();
+        // These faces are seen from outside counterclockwise if the volume is positive.
+        let expected = if inside { whole as i8 } else { 0 };
+        assert_eq!(winding, expected, "{corners:?} {point:?}");
+        seen[(expected + 1) as usize] += 1;
+    }
+    assert!(seen.iter().all(|&count| count > 500), "{seen:?}");
 }
