@@ -36,8 +36,7 @@ impl Contacts {
         let radii = vec![0.5 * LAW.reach; x.len()];
         self.search.search(&self.model, x, &radii, &mut self.pairs, &mut self.separations);
         let topology = self.model.topology();
-        let springs = self.separations.iter().enumerate().map(|(index, separation)| {
-            let (kind, pair) = (self.pairs.kind(index), &self.pairs.pairs()[index]);
+        let springs = self.pairs.iter().zip(&self.separations).map(|((kind, pair), separation)| {
             // Pairs that are close only because their neighbors touch are no contacts.
             let features = Facing::features(topology, kind, pair, separation);
             let share = self.facing.contact_share(topology, features, &separation.normal, x);
