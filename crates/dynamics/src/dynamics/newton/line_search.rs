@@ -39,8 +39,9 @@ impl Newton<'_> {
             let rounding = self.energies.rounding;
             let noise = ENERGY_ROUNDING * scale.max(terms) + LIKELY_ROUNDING * rounding;
             let slack = noise.max(rounding);
-            let passes =
-                energy <= before - self.params.newton.line_search_decrease * length * predicted + slack;
+            // Infinite where a custom element is not defined; the slack is then infinite, too.
+            let passes = energy.is_finite()
+                && energy <= before - self.params.newton.line_search_decrease * length * predicted + slack;
             if passes || accept {
                 (info.energy_after, info.step_length) = (energy, length);
                 let model = predicted * length * (1.0 - 0.5 * length);
