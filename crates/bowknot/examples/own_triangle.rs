@@ -97,7 +97,7 @@ impl CustomElement for Triangle {
 }
 
 /// A strip that hangs in the plane y = 0, its highest row first.
-fn strip(material: ClothMaterial) -> BodySpec {
+fn strip() -> MeshArrays {
     let [columns, rows] = COUNT;
     let step = LENGTH / f64::from(rows - 1);
     let vertex = |v: u32| Point::new(f64::from(v % columns) * step, 0.0, -f64::from(v / columns) * step);
@@ -106,22 +106,21 @@ fn strip(material: ClothMaterial) -> BodySpec {
         [[a, a + 1, a + columns + 1], [a, a + columns + 1, a + columns]]
     };
     let triangles = (0..(columns - 1) * (rows - 1)).flat_map(square).collect();
-    let mesh = MeshArrays::surface((0..columns * rows).map(vertex).collect(), triangles);
-    BodySpec { material: Material::Cloth(material), ..BodySpec::from_arrays("strip", mesh) }
+    MeshArrays::surface((0..columns * rows).map(vertex).collect(), triangles)
 }
 
 /// How much longer the strip is under its own weight [m].
 fn elongation(material: ClothMaterial, own_lame: Option<(f64, f64)>) -> Result<f64, SimulationError> {
-    let spec = strip(material);
-    let triangles =
-        spec.shape.as_ref().and_then(|shape| shape.mesh()).map_or_else(Vec::new, |mesh| mesh.triangles);
-    let mut scene = Scene { bodies: vec![spec], ..Scene::default() };
+    let mesh = strip();
+    let body = BodySpec::from_arrays("strip", mesh.clone());
+    let body = BodySpec { material: Material::Cloth(material), ..body };
+    let mut scene = Scene { bodies: vec![body], ..Scene::default() };
     scene.simulation.dt = 0.05;
     let mut simulator = Simulator::new(&scene)?;
     simulator.add_pin("rail", "strip", &(0..COUNT[0]).collect::<Vec<u32>>())?;
     if let Some(lame) = own_lame {
         let mut elements: Vec<Arc<dyn CustomElement>> = Vec::new();
-        for triangle in triangles {
+        for triangle in mesh.triangles {
             let mut vertices = [0; 3];
             for (vertex, corner) in vertices.iter_mut().zip(triangle) {
                 *vertex = simulator.vertex("strip", corner)?;

@@ -138,14 +138,15 @@ pub fn check_derivatives(
     let force = largest(&here.gradient).max(SMALL * stiffness * size);
     let stiffness = stiffness.max(SMALL * force / size);
     let energy = here.energy.abs().max(force * size);
-    let relative = |error: f64, scale: f64| if scale > 0.0 { error / scale } else { 0.0 };
+    // Where all derivatives are zero, any difference is too large.
+    let relative = |error: f64, scale: f64| if error > 0.0 { error / scale } else { 0.0 };
 
     let (gradient, problem) = compare(count, |k, h| {
         let [plus, minus] = [h, -h].map(|h| element.energy(&moved(x, k, h * size)));
         (vec![(plus - minus) / (2.0 * h * size)], vec![here.gradient[k / 3][k % 3]])
     });
     let gradient = relative(gradient, force);
-    if !(gradient <= TOLERANCE) {
+    if gradient > TOLERANCE {
         let Difference { column, given, expected, .. } = problem;
         return Err(DerivativeProblem::Gradient { vertex: column / 3, axis: column % 3, given, expected });
     }
@@ -160,7 +161,7 @@ pub fn check_derivatives(
         (slopes.collect(), (0..3 * count).map(|row| here.entry(row, k)).collect())
     });
     let hessian = relative(hessian, stiffness);
-    if !(hessian <= TOLERANCE) {
+    if hessian > TOLERANCE {
         let Difference { row, column, given, expected } = problem;
         let (vertices, axes) = ([row / 3, column / 3], [row % 3, column % 3]);
         return Err(DerivativeProblem::Hessian { vertices, axes, given, expected });
@@ -174,9 +175,12 @@ pub fn check_derivatives(
         }
         asymmetry = asymmetry.max(own);
     }
-    let change = |x: Vec<Point>| (element.energy(&x) - here.energy).abs();
+    let change = |x: Vec<Point>| {
+        let change = (element.energy(&x) - here.energy).abs();
+        if change.is_nan() { f64::INFINITY } else { change }
+    };
     let rigid_motion = relative(rigid_motions(x, size).map(change).fold(0.0, f64::max), energy);
-    if element.is_invariant() && !(rigid_motion <= ROUNDING) {
+    if element.is_invariant() && rigid_motion > ROUNDING {
         return Err(DerivativeProblem::NotInvariant { change: rigid_motion });
     }
     let dense =

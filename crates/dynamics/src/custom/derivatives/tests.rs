@@ -121,6 +121,30 @@ fn an_energy_that_depends_on_the_place_is_not_invariant() {
     assert!(matches!(problem, DerivativeProblem::NotInvariant { change } if change > 0.1), "{problem}");
 }
 
+/// An energy without derivatives.
+#[derive(Debug)]
+struct Forgotten([u32; 1]);
+
+impl CustomElement for Forgotten {
+    fn vertices(&self) -> &[u32] {
+        &self.0
+    }
+
+    fn energy(&self, x: &[Point]) -> f64 {
+        x[0].y
+    }
+
+    fn gradient(&self, _x: &[Point], _gradient: &mut [Vector]) {}
+
+    fn hessian(&self, _x: &[Point], _hessian: &mut ElementMatrix<'_>) {}
+}
+
+#[test]
+fn a_gradient_that_was_forgotten_is_found() {
+    let problem = check_derivatives(&Forgotten([0]), &X[..1]).expect_err("forgotten");
+    assert!(matches!(problem, DerivativeProblem::Gradient { vertex: 0, axis: 1, .. }), "{problem}");
+}
+
 /// An energy whose Hessian lacks a mirrored entry.
 #[derive(Debug)]
 struct Lopsided([u32; 1]);

@@ -41,8 +41,8 @@ impl Newton<'_> {
             let mut before = (info.step_length < 1.0).then_some(info.energy_after);
             if before.is_some() {
                 self.bodies.keep_trial()?;
-                // A custom element may not be defined there.
-                if self.place(1.0)?.0.is_finite() {
+                let (energy, _) = self.place(1.0)?;
+                if self.is_defined(energy) {
                     self.bodies.start_from_trial()?;
                 } else {
                     self.bodies.start_from_kept_trial()?;
