@@ -59,7 +59,7 @@ impl CustomElement for Bead {
 
 /// 36 steel beads of 8 mm on the ground.
 fn scene() -> Scene {
-    let material = ParticleMaterial { density: 7800.0, radius: 0.004, ..ParticleMaterial::default() };
+    let material = ParticleMaterial { density: 7800.0, radius: 0.004 };
     let beads = BodySpec {
         name: "beads".to_owned(),
         kind: BodyKind::Particles,

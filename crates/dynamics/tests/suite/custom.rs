@@ -18,10 +18,8 @@ struct Spring {
     rest: f64,
 }
 
-impl Spring {
-    fn new(vertices: [u32; 2], stiffness: f64, rest: f64) -> Arc<dyn CustomElement> {
-        Arc::new(Self { vertices, stiffness, rest })
-    }
+fn spring(vertices: [u32; 2], stiffness: f64, rest: f64) -> Arc<dyn CustomElement> {
+    Arc::new(Spring { vertices, stiffness, rest })
 }
 
 impl CustomElement for Spring {
@@ -116,7 +114,7 @@ fn group(elements: Vec<Arc<dyn CustomElement>>) -> Vec<ElementGroup> {
 fn grains(places: &[Point]) -> DynamicsModel {
     let radius = 0.005;
     let volume = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
-    let material = ParticleMaterial { density: 1e-3 / volume, radius, ..ParticleMaterial::default() };
+    let material = ParticleMaterial { density: 1e-3 / volume, radius };
     let body = Body::particles("grains", (0..places.len() as u32).collect(), material);
     DynamicsModel::new(places.to_vec(), vec![body]).expect("valid")
 }
@@ -124,8 +122,8 @@ fn grains(places: &[Point]) -> DynamicsModel {
 #[test]
 fn derivatives_of_the_elements_here_are_right() {
     let x = [Point::new(0.1, 0.2, 0.3), Point::new(0.5, -0.1, 0.4)];
-    check_derivatives(&*Spring::new([0, 1], 30.0, 0.3), &x).expect("right");
-    check_derivatives(&*Spring::new([0, 1], 30.0, 0.8), &x).expect("right");
+    check_derivatives(&*spring([0, 1], 30.0, 0.3), &x).expect("right");
+    check_derivatives(&*spring([0, 1], 30.0, 0.8), &x).expect("right");
     check_derivatives(&Pull { vertex: [0], force: Vector::new(1.0, 2.0, 3.0) }, &x[..1]).expect("right");
     let errors =
         check_derivatives(&Logarithm { vertex: [0], strength: 2.0, barrier: true }, &x[..1]).expect("right");
@@ -134,14 +132,13 @@ fn derivatives_of_the_elements_here_are_right() {
 
 #[test]
 fn a_weight_hangs_on_a_spring_and_swings_with_its_period() {
-    let (stiffness, mass, rest) = (1.0, 1e-3, 0.1);
+    let (stiffness, mass, rest): (f64, f64, f64) = (1.0, 1e-3, 0.1);
     let places = [Point::origin(), Point::new(0.0, 0.0, -rest)];
-    let model =
-        grains(&places).with_elements(group(vec![Spring::new([0, 1], stiffness, rest)])).expect("valid");
+    let model = grains(&places).with_elements(group(vec![spring([0, 1], stiffness, rest)])).expect("valid");
     assert_eq!(model.components_of_vertices(), [0, 0]);
     let mut dynamics = Dynamics::new(model, with_tolerance(1e-10)).expect("valid");
     let (mut x, mut v, dt) = (places.to_vec(), vec![Vector::zeros(); 2], 2e-4);
-    let period = 2.0 * std::f64::consts::PI * (mass / stiffness as f64).sqrt();
+    let period = 2.0 * std::f64::consts::PI * (mass / stiffness).sqrt();
     let lowest = -rest - mass * 9.81 / stiffness;
     let mut crossings = Vec::new();
     for step in 0..(3.2 * period / dt) as usize {
@@ -181,7 +178,7 @@ fn springs_do_what_those_of_strands_do() {
         let model = DynamicsModel::new(rest.clone(), vec![Body::strands("rope", edges.clone(), material)]);
         let model = model.expect("valid");
         let length = |&[a, b]: &[u32; 2]| (rest[a as usize] - rest[b as usize]).norm();
-        let springs = edges.iter().map(|edge| Spring::new(*edge, own / length(edge), length(edge)));
+        let springs = edges.iter().map(|edge| spring(*edge, own / length(edge), length(edge)));
         let springs = if own > 0.0 { group(springs.collect()) } else { Vec::new() };
         let model = model.with_elements(springs).expect("valid");
         let mut dynamics = Dynamics::new(model, with_tolerance(1e-10)).expect("valid");
@@ -205,7 +202,7 @@ fn momentum_of_bodies_that_springs_join_is_conserved() {
     let count = places.len() as u32;
     places.extend(places.clone().iter().map(|x| x + Vector::new(0.3, 0.1, 0.2)));
     triangles.extend(triangles.clone().iter().map(|t| t.map(|v| v + count)));
-    let springs = vec![Spring::new([0, count], 5.0, 0.1), Spring::new([7, count + 12], 20.0, 0.5)];
+    let springs = vec![spring([0, count], 5.0, 0.1), spring([7, count + 12], 20.0, 0.5)];
     let model = cloth_model(&places, triangles, ClothMaterial::cotton())
         .with_elements(group(springs))
         .expect("valid");
@@ -249,7 +246,7 @@ fn results_have_the_same_bits_for_any_number_of_threads() {
         pool.install(|| {
             let (places, triangles) = sheet(1.0, 1.0, 40, 40);
             let springs =
-                (0..800).map(|k| Spring::new([(k * 37) % 1681, (k * 37 + 200 + k % 90) % 1681], 2.0, 0.2));
+                (0..800).map(|k| spring([(k * 37) % 1681, (k * 37 + 200 + k % 90) % 1681], 2.0, 0.2));
             let model = cloth_model(&places, triangles, ClothMaterial::cotton());
             let model = model.with_elements(group(springs.collect())).expect("valid");
             let mut dynamics = Dynamics::new(model, with_tolerance(1e-4)).expect("valid");
@@ -290,8 +287,8 @@ fn no_elements_change_no_bit() {
 #[test]
 fn rest_lengths_change_between_time_steps() {
     let places = [Point::origin(), Point::new(0.1, 0.0, 0.0)];
-    let spring = |rest: f64| vec![Spring::new([0, 1], 4.0, rest)];
-    let model = grains(&places).with_elements(group(spring(0.1))).expect("valid");
+    let only = |rest: f64| vec![spring([0, 1], 4.0, rest)];
+    let model = grains(&places).with_elements(group(only(0.1))).expect("valid");
     let mut dynamics = Dynamics::new(model, weightless(with_tolerance(1e-8))).expect("valid");
     let (mut x, mut v) = (places.to_vec(), vec![Vector::zeros(); 2]);
     let step = |dynamics: &mut Dynamics, x: &mut [Point], v: &mut [Vector]| {
@@ -302,17 +299,17 @@ fn rest_lengths_change_between_time_steps() {
     };
     step(&mut dynamics, &mut x, &mut v);
     assert_eq!(x, places, "at rest");
-    dynamics.replace_elements("own", spring(0.15)).expect("the same vertices");
+    dynamics.replace_elements("own", only(0.15)).expect("the same vertices");
     step(&mut dynamics, &mut x, &mut v);
     assert!((x[1].x - 0.15).abs() < 1e-9, "{}", x[1].x);
 
     let refused = |dynamics: &mut Dynamics, name: &str, elements| {
         dynamics.replace_elements(name, elements).expect_err("refused").to_string()
     };
-    assert_eq!(refused(&mut dynamics, "mine", spring(0.1)), "no custom elements \"mine\"; there are: own");
+    assert_eq!(refused(&mut dynamics, "mine", only(0.1)), "no custom elements \"mine\"; there are: own");
     assert_eq!(refused(&mut dynamics, "own", Vec::new()), "custom elements \"own\": 0 given in place of 1");
     assert_eq!(
-        refused(&mut dynamics, "own", vec![Spring::new([1, 0], 4.0, 0.1)]),
+        refused(&mut dynamics, "own", vec![spring([1, 0], 4.0, 0.1)]),
         "custom element 0 of \"own\": it would replace one with the vertices [0, 1] and must have the same: \
          remove and add elements anew"
     );
@@ -371,7 +368,7 @@ fn what_is_not_finite_ends_the_step_and_names_the_element() {
     let (places, triangles) = sheet(0.2, 0.2, 4, 4);
     for quantity in ["energy", "gradient", "Hessian"] {
         let broken = Arc::new(Broken { vertices: [20, 3], quantity }) as Arc<dyn CustomElement>;
-        let elements = vec![Spring::new([0, 9], 1.0, 0.1), broken, Spring::new([1, 9], 1.0, 0.1)];
+        let elements = vec![spring([0, 9], 1.0, 0.1), broken, spring([1, 9], 1.0, 0.1)];
         let model =
             cloth_model(&places, triangles.clone(), ClothMaterial::cotton()).with_elements(group(elements));
         let mut dynamics = Dynamics::new(model.expect("valid"), with_tolerance(1e-4)).expect("valid");
@@ -381,11 +378,7 @@ fn what_is_not_finite_ends_the_step_and_names_the_element() {
         assert_eq!(error, StepError::CustomElement { group: "own".to_owned(), index: 1, quantity });
         assert_eq!(x, places, "the state is that before the step");
         // The step can be made once the element is a sound one.
-        let sound = vec![
-            Spring::new([0, 9], 1.0, 0.1),
-            Spring::new([20, 3], 1.0, 0.1),
-            Spring::new([1, 9], 1.0, 0.1),
-        ];
+        let sound = vec![spring([0, 9], 1.0, 0.1), spring([20, 3], 1.0, 0.1), spring([1, 9], 1.0, 0.1)];
         dynamics.replace_elements("own", sound).expect("the same vertices");
         dynamics.solve_step(&mut x, &mut v, 0.01, &free, &places, 2).expect("finite");
     }
@@ -401,10 +394,10 @@ fn refusals_name_the_element_and_the_reason() {
             .expect("valid")
     };
     let elements = vec![
-        Spring::new([0, 1], 1.0, 0.1),
-        Spring::new([0, 10], 1.0, 0.1),
-        Spring::new([3, 3], 1.0, 0.1),
-        Spring::new([9, 3], 1.0, 0.1),
+        spring([0, 1], 1.0, 0.1),
+        spring([0, 10], 1.0, 0.1),
+        spring([3, 3], 1.0, 0.1),
+        spring([9, 3], 1.0, 0.1),
     ];
     let mut groups = group(elements);
     groups.extend(group(Vec::new()));
@@ -447,13 +440,13 @@ fn elements_join_bodies_and_vertices_that_are_prescribed() {
     let (mut places, triangles) = sheet(0.2, 0.2, 4, 4);
     let count = places.len() as u32;
     places.push(Point::new(0.0, 0.0, -0.2));
-    let weight = ParticleMaterial { density: 1000.0, radius: 0.01, ..ParticleMaterial::default() };
+    let weight = ParticleMaterial { density: 1000.0, radius: 0.01 };
     let bodies = vec![
         Body::cloth("sheet", triangles, ClothMaterial::cotton()),
         Body::particles("weight", vec![count], weight),
     ];
     let model = DynamicsModel::new(places.clone(), bodies).expect("valid");
-    let model = model.with_elements(group(vec![Spring::new([0, count], 10.0, 0.2)])).expect("valid");
+    let model = model.with_elements(group(vec![spring([0, count], 10.0, 0.2)])).expect("valid");
     let params = with_gravity(with_tolerance(1e-8), Vector::new(0.0, 0.0, -10.0));
     let mut dynamics = Dynamics::new(model, params).expect("valid");
     let (mut x, mut v) = (places.clone(), vec![Vector::zeros(); places.len()]);
