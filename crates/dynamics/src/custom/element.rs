@@ -26,7 +26,7 @@ pub const MAX_ELEMENT_VERTICES: usize = 16;
 /// function of its arguments.
 pub trait CustomElement: Debug + Send + Sync {
     /// Its vertices, by their numbers in the scene: 1 to [`MAX_ELEMENT_VERTICES`], each once and none of an
-    /// obstacle. They are read once and must not change.
+    /// obstacle. They must not change.
     fn vertices(&self) -> &[u32];
 
     /// V [J] at `x` [m], which has one entry per vertex of the element, in its order.
@@ -113,8 +113,10 @@ fn all_finite(vectors: &[Vector]) -> bool {
     vectors.iter().all(|v| v.iter().all(|c| c.is_finite()))
 }
 
-/// Gradient [N] and Hessian [N/m] of an element, row by row; None if a number is not finite, with the name of
-/// what is not.
+/// Computes gradient [N] and Hessian [N/m] of an element, row by row.
+///
+/// # Errors
+/// What is not finite.
 pub(super) fn derivatives(
     element: &dyn CustomElement,
     x: &[Point],

@@ -315,13 +315,16 @@ impl Dynamics {
         sets_trial: bool,
         run: impl Fn(&mut Newton<'_>) -> Answer<T> + Sync,
     ) -> Result<T, StepError> {
+        // What reports have found is not about this time step.
+        self.custom_fault();
         // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue;
         // from outside each would put this thread to sleep and wake it again (20 times the CPU time on a busy
         // machine, at 1,700 nodes).
-        // What reports have found is not about this time step.
-        self.custom_fault();
         let done = rayon::scope(|_| self.with_bodies_in_pool(step, sets_trial, &run))?;
-        self.custom_fault().map_or(Ok(done), Err)
+        let Some(fault) = self.custom_fault() else { return Ok(done) };
+        // The cache lacks what was not finite.
+        self.work.cache.clear();
+        Err(fault)
     }
 
     /// The first custom element that has computed something that is not finite since the last call.

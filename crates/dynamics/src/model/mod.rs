@@ -98,9 +98,11 @@ impl DynamicsModel {
         Self::of(rest_positions, bodies, Vec::new())
     }
 
-    /// The same bodies with these custom elements, in place of any that there were. Vertices that elements
-    /// join are then of one component. Contacts take their stiffness from masses and from the other elements
-    /// alone.
+    /// The same bodies with these custom elements, in place of any that there were. It is built anew.
+    ///
+    /// Vertices that elements join are then of one component: its linear system is solved as one, and rotation
+    /// that implicit Euler loses is given back to it as a whole. Contacts take their stiffness from masses and
+    /// from the other elements alone.
     ///
     /// # Errors
     /// Every error that was found: two groups of one name, elements without vertices or with more than

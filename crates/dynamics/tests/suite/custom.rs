@@ -377,6 +377,12 @@ fn what_is_not_finite_ends_the_step_and_names_the_element() {
         let error = dynamics.solve_step(&mut x, &mut v, 0.01, &free, &places, 2).expect_err("not finite");
         assert_eq!(error, StepError::CustomElement { group: "own".to_owned(), index: 1, quantity });
         assert_eq!(x, places, "the state is that before the step");
+        dynamics.begin_step(&x, &v, 0.01).expect("a step");
+        for _ in 0..2 {
+            let again =
+                dynamics.newton_target(&x, &free, &places, &mut places.clone()).expect_err("not finite");
+            assert_eq!(again, error, "whatever was computed before");
+        }
         // The step can be made once the element is a sound one.
         let sound = vec![spring([0, 9], 1.0, 0.1), spring([20, 3], 1.0, 0.1), spring([1, 9], 1.0, 0.1)];
         dynamics.replace_elements("own", sound).expect("the same vertices");
