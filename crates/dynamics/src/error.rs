@@ -143,6 +143,88 @@ pub enum ModelError {
         /// The value.
         error: ParamError,
     },
+    /// A custom element is refused.
+    #[error("custom element {index} of \"{group}\": {problem}")]
+    CustomElement {
+        /// Name of its group.
+        group: String,
+        /// The index of the element in the group.
+        index: usize,
+        /// The reason.
+        problem: ElementProblem,
+    },
+    /// Two groups of custom elements have the same name.
+    #[error("two groups of custom elements have the name \"{group}\"; names must differ")]
+    RepeatedGroup {
+        /// The name.
+        group: String,
+    },
+    /// No group of custom elements has the name.
+    #[error("no custom elements \"{group}\"; there are: {}", known.join(", "))]
+    UnknownGroup {
+        /// The name given.
+        group: String,
+        /// The names that there are.
+        known: Vec<String>,
+    },
+    /// A group of custom elements would be replaced by another number of elements.
+    #[error("custom elements \"{group}\": {given} given in place of {expected}")]
+    ElementCount {
+        /// Name of the group.
+        group: String,
+        /// Elements given.
+        given: usize,
+        /// Elements of the group.
+        expected: usize,
+    },
+}
+
+/// Why a custom element is refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ElementProblem {
+    /// It has no vertices, or too many.
+    #[error("it has {given} vertices; 1 to {most} are possible")]
+    Count {
+        /// Vertices given.
+        given: usize,
+        /// The most that are possible.
+        most: usize,
+    },
+    /// It names a vertex that does not exist.
+    #[error("it names vertex {vertex}, but there are only {count} vertices")]
+    OutOfRange {
+        /// The vertex.
+        vertex: u32,
+        /// Vertices of the model.
+        count: usize,
+    },
+    /// It names a vertex twice.
+    #[error("it names vertex {vertex} twice")]
+    Repeated {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// It names a vertex of an obstacle, which is no unknown of the dynamics.
+    #[error(
+        "vertex {vertex} belongs to the obstacle \"{obstacle}\", which no element moves: let the element hold \
+         that place itself, and replace it where the obstacle moves"
+    )]
+    Obstacle {
+        /// The vertex.
+        vertex: u32,
+        /// Name of the obstacle.
+        obstacle: String,
+    },
+    /// It would replace an element with other vertices.
+    #[error(
+        "it would replace one with the vertices {expected:?} and must have the same: remove and add elements \
+         anew"
+    )]
+    OtherVertices {
+        /// Vertices of the element before.
+        expected: Vec<u32>,
+    },
 }
 
 /// The first ten indices as " (3, 17, ..)", or an empty text if there are none.
@@ -201,6 +283,26 @@ pub enum StepError {
     QuadraticElements {
         /// Name of the first such body.
         body: String,
+    },
+    /// A custom element has computed something that is not finite, at a state that the time step passed
+    /// through.
+    #[error("custom element {index} of \"{group}\": its {quantity} is not finite")]
+    CustomElement {
+        /// Name of its group.
+        group: String,
+        /// The index of the element in the group.
+        index: usize,
+        /// "energy", "gradient" or "Hessian".
+        quantity: &'static str,
+    },
+    /// A backend cannot compute custom elements, see [`crate::Dynamics::set_backend`].
+    #[error(
+        "the custom elements \"{group}\" are computed by the CPU alone: remove them, or leave the dynamics \
+         there"
+    )]
+    CustomElements {
+        /// Name of the first group.
+        group: String,
     },
     /// The backend has failed, see [`crate::Dynamics::set_backend`].
     #[error("{message}")]

@@ -16,6 +16,7 @@
 //! |---|---|
 //! | [`material`] | [`ClothMaterial`], [`SolidMaterial`], [`StrandMaterial`], [`ParticleMaterial`] with named presets |
 //! | [`body`] | [`Body`]: elements, material and gravity of a body |
+//! | [`custom`] | [`CustomElement`]: energies of your own |
 //! | [`model`] | [`DynamicsModel`]: masses, elements, patterns; fixed during a run |
 //! | [`params`] | [`DynamicsParams`] |
 //! | [`dynamics`] | [`Dynamics`]: the time step, Newton iterations, the line search |
@@ -26,6 +27,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod body;
+pub mod custom;
 mod device_work;
 mod drag;
 pub mod dynamics;
@@ -49,13 +51,17 @@ pub use nalgebra::Matrix3;
 
 pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
+pub use custom::{
+    CustomElement, DerivativeErrors, DerivativeProblem, ElementGroup, ElementMatrix, MAX_ELEMENT_VERTICES,
+    check_derivatives,
+};
 pub use device_work::DeviceWork;
 pub use dynamics::{
     BodiesPotential, Dynamics, Held, MatrixBlocks, NewtonBackend, NewtonBackendError, NewtonInfo,
     NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, Residual, SolveLimits, StepTerms, Touching, Trial,
     Watched,
 };
-pub use error::{ModelError, StepError};
+pub use error::{ElementProblem, ModelError, StepError};
 pub use linear::accuracy::CgInfo;
 pub use linear::assembly::{
     AssemblySprings, BendElement, ElementModel, MembraneElement, SolidKind, StrandElement, TetrahedronElement,

@@ -29,12 +29,14 @@ pub struct ElasticEnergies {
     pub strand_stretching: f64,
     /// Bending of strands.
     pub strand_bending: f64,
+    /// That of [custom elements](crate::CustomElement).
+    pub custom: f64,
 }
 
 impl ElasticEnergies {
     /// The sum [J].
     pub fn total(&self) -> f64 {
-        self.membrane + self.bending + self.solid + self.strand_stretching + self.strand_bending
+        self.membrane + self.bending + self.solid + self.strand_stretching + self.strand_bending + self.custom
     }
 }
 
@@ -44,7 +46,7 @@ impl ElasticEnergies {
 pub struct Energies {
     /// Kinetic energy, 1/2 sum m |v|^2.
     pub kinetic: f64,
-    /// Energy of strain and bending, see [`DynamicsModel::elastic_energies`].
+    /// Energy of strain and bending and of custom elements, see [`DynamicsModel::elastic_energies`].
     pub elastic: f64,
     /// Potential energy of gravity, - sum m g.x: zero at the origin.
     pub potential: f64,
@@ -86,7 +88,7 @@ impl DynamicsModel {
             .reduce(|| 0.0, f64::max)
     }
 
-    /// Elastic energy at `x` [J], of strain and bending.
+    /// Elastic energy at `x` [J], of strain and bending and of custom elements.
     pub fn elastic_energy(&self, x: &[Point]) -> f64 {
         self.elastic_energies(x).total()
     }
@@ -96,13 +98,14 @@ impl DynamicsModel {
         let x: Vec<Vector> = self.node_vertex.iter().map(|&v| x[v as usize].coords).collect();
         let motion = Motion { x: &x, start: &x, rate: 0.0 };
         let mut energies = ElasticEnergies { bending: self.bending.energy(&x), ..Default::default() };
-        for set in &self.element_sets {
+        for set in self.sets() {
             let sum = match set.kind() {
                 ElementKind::Membrane => &mut energies.membrane,
                 ElementKind::Bending => &mut energies.bending,
                 ElementKind::Solid => &mut energies.solid,
                 ElementKind::StrandStretching => &mut energies.strand_stretching,
                 ElementKind::StrandBending => &mut energies.strand_bending,
+                ElementKind::Custom => &mut energies.custom,
             };
             let chunks = x.len().div_ceil(CHUNK);
             let partial: Vec<f64> =
@@ -127,7 +130,7 @@ impl DynamicsModel {
         let change = Displaced { from: &from, x: &x, moved: &moved };
         let chunks = (0..moved.len().div_ceil(CHUNK)).into_par_iter();
         let of_chunk = |chunk: usize| {
-            let of_sets = self.element_sets.iter().map(|set| set.energy_change(chunk, &change));
+            let of_sets = self.sets().map(|set| set.energy_change(chunk, &change));
             self.bending.energy_change(chunk, &change) + of_sets.sum::<f64>()
         };
         let changes: Vec<f64> = chunks.map(of_chunk).collect();
@@ -144,7 +147,7 @@ impl DynamicsModel {
             starts.map(of_rows).collect::<Vec<f64>>().iter().sum()
         };
         let mut energies: Vec<f64> = self.components.par_iter().map(bending).collect();
-        for set in &self.element_sets {
+        for set in self.sets() {
             set.for_each_energy(x, &mut |node, energy| {
                 energies[self.component(node)] += energy;
             });

@@ -374,6 +374,7 @@ mod tests {
             gravity: Some(Vector::new(0.1, 0.2, -1e300)),
             wind: Some(Vector::x()),
             external_forces: vec![Vector::zeros(), Vector::new(1.0 / 3.0, 0.0, 5e-324)],
+            elements: [("a \"spring\"".to_owned(), vec![vec![3, 1], vec![0]])].into(),
             pushed: vec![true, false],
         }
     }

@@ -5,7 +5,7 @@ use super::drive::DriveError;
 use super::report::element_words;
 use super::restore_error::RestoreError;
 use bowknot_check::{CheckError, Intersection};
-use bowknot_dynamics::{Errors, ParamError, StepError};
+use bowknot_dynamics::{Errors, ModelError, ParamError, StepError};
 use bowknot_errors::counted;
 use bowknot_io::IoError;
 use bowknot_scene::SceneError;
@@ -121,11 +121,16 @@ impl SimulationError {
     /// The dynamics has no target in a time step.
     pub(super) fn target(step: usize, source: StepError) -> Self {
         match source {
-            StepError::Backend { .. } | StepError::QuadraticElements { .. } => {
-                Self::Backend { step, source: Box::new(source) }
-            }
+            StepError::Backend { .. }
+            | StepError::QuadraticElements { .. }
+            | StepError::CustomElements { .. } => Self::Backend { step, source: Box::new(source) },
             source => Self::Target { step, source },
         }
+    }
+
+    /// Custom elements that are refused.
+    pub(super) fn elements(source: Errors<ModelError>) -> Self {
+        DriveError::Elements { source }.into()
     }
 
     /// A collision problem that is refused, with the name of its body.

@@ -13,6 +13,7 @@
 mod backend;
 mod checkpoint;
 mod contact_forces;
+mod custom_elements;
 mod drive;
 mod error;
 mod finished;
@@ -44,12 +45,13 @@ pub use start::NearStart;
 pub use stretch_limits::{HeldApart, HeldPair};
 
 use bowknot_check::{CheckError, Judge, StateOptions, StateReport};
-use bowknot_dynamics::{DeviceWork, Dynamics, DynamicsModel, NewtonBackend};
+use bowknot_dynamics::{DeviceWork, Dynamics, DynamicsModel, ElementGroup, NewtonBackend};
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
 use bowknot_scene::{CollisionEvery, Scene};
 use bowknot_twoway::{ResolveInput, Resolver};
 use contact_forces::Contacts;
+use custom_elements::{joined_bodies, vertices_of_elements};
 use finished::Finished;
 use interior::Interior;
 use prescribed::Ends;
@@ -143,7 +145,7 @@ impl Simulator {
     fn of_world(world: World, scene: &Scene) -> Result<Self, SimulationError> {
         let world = Arc::new(world);
         let home = Home { scene: Arc::new(scene.clone()), world: Arc::clone(&world) };
-        let mut simulator = Self::at_start(world, home, None)?;
+        let mut simulator = Self::at_start(world, home, None, Vec::new())?;
         simulator.apply_filters()?;
         if let Some((lines, count)) = simulator.intersections()? {
             let positions = &simulator.positions[..simulator.world.collision_vertices()];
@@ -192,11 +194,21 @@ impl Simulator {
         if self.step == 0 { start::near_starts(&self.world, &self.resolver) } else { Vec::new() }
     }
 
-    /// A simulator at the start of its world, whatever intersects there. `changed` is the scene of the world
-    /// if that is not the one that the simulation began with.
-    fn at_start(world: Arc<World>, home: Home, changed: Option<Box<Scene>>) -> Result<Self, SimulationError> {
+    /// A simulator at the start of its world, whatever intersects there, with custom elements. `changed` is the
+    /// scene of the world if that is not the one that the simulation began with.
+    fn at_start(
+        world: Arc<World>,
+        home: Home,
+        changed: Option<Box<Scene>>,
+        groups: Vec<ElementGroup>,
+    ) -> Result<Self, SimulationError> {
         let scene = changed.as_deref().unwrap_or(&home.scene);
-        let model = world.dynamics_model()?;
+        let elements = vertices_of_elements(&groups);
+        let joined = joined_bodies(&world, &groups);
+        let mut model = world.dynamics_model()?;
+        if !groups.is_empty() {
+            model = model.with_elements(groups).map_err(SimulationError::elements)?;
+        }
         let count = world.collision_vertices();
         let (rest_positions, masses) = (&model.rest_positions()[..count], &model.masses()[..count]);
         let contact = world.contact.clone();
@@ -206,7 +218,8 @@ impl Simulator {
         let contacts = Contacts::new(&scene.solver.repulsion, &world, &model, &resolver);
         let dynamics = Dynamics::new(model, scene.dynamics()).map_err(SimulationError::Dynamics)?;
         let anchors = vec![Vec::new(); world.pins.len()];
-        let sleeping = SleepingBodies::new(&scene.solver.sleep, &world, &resolver, scene.simulation.dt);
+        let sleeping =
+            SleepingBodies::new(&scene.solver.sleep, &world, &resolver, scene.simulation.dt, joined);
         Ok(Self {
             dt: scene.simulation.dt,
             newton_iterations: scene.simulation.newton_iterations,
@@ -230,7 +243,7 @@ impl Simulator {
             pin_forces: Vec::new(),
             undriven: Arc::clone(&world),
             world,
-            driven: Driven { scene: changed, ..Driven::default() },
+            driven: Driven { scene: changed, elements, ..Driven::default() },
             home,
         })
     }
@@ -264,7 +277,8 @@ impl Simulator {
     /// Lets a backend compute the dynamics from the next time step on, in place of the CPU; None for the CPU.
     ///
     /// # Errors
-    /// [`SimulationError::Backend`] if a body has quadratic elements: the CPU then computes the dynamics.
+    /// [`SimulationError::Backend`] if a body has quadratic elements, or there are custom ones: the CPU then
+    /// computes the dynamics.
     pub fn set_dynamics_backend(
         &mut self,
         backend: Option<Box<dyn NewtonBackend>>,

@@ -2,6 +2,7 @@
 
 use super::Simulator;
 use super::checkpoint::Checkpoint;
+use super::drive::Driven;
 use super::restore_error::RestoreError;
 use super::sleep::SleepState;
 use bowknot_scene::Scene;
@@ -92,6 +93,7 @@ impl Simulator {
                 return Err(RestoreError::Length { what, given, expected });
             }
         }
+        self.check_elements(&checkpoint.driven)?;
         self.check_driven(&checkpoint.driven)?;
         let pins = checkpoint.driven.pins.as_ref().unwrap_or(&self.undriven.pins);
         let is_of = |(anchors, pin): (&Vec<_>, &bowknot_scene::world::Pin)| {
@@ -105,11 +107,14 @@ impl Simulator {
         }
         let (bodies, sleep) = (self.world.bodies.len(), &checkpoint.sleep);
         let is_island = |island: &u32| *island == SleepState::AWAKE || (*island as usize) < bodies;
+        let joined = self.sleeping.as_ref().map_or(&[][..], |sleeping| sleeping.joined());
+        let is_one = |pair: &[u32; 2]| sleep.islands[pair[0] as usize] == sleep.islands[pair[1] as usize];
         let fits = sleep.origins.is_empty()
             || (sleep.origins.len() == expected
                 && sleep.calm_steps.len() == bodies
                 && sleep.islands.len() == bodies
-                && sleep.islands.iter().all(is_island));
+                && sleep.islands.iter().all(is_island)
+                && joined.iter().all(is_one));
         if !fits {
             return Err(RestoreError::Sleep);
         }
@@ -117,6 +122,25 @@ impl Simulator {
             return Err(RestoreError::Order);
         }
         Ok(())
+    }
+
+    /// Whether the custom elements are those of a state.
+    fn check_elements(&self, driven: &Driven) -> Result<(), RestoreError> {
+        let refuse = |group: &String, problem| Err(RestoreError::Elements { group: group.clone(), problem });
+        let (own, of_state) = (&self.driven.elements, &driven.elements);
+        if let Some(group) = of_state.keys().find(|group| !own.contains_key(*group)) {
+            return refuse(
+                group,
+                "are not there, and a checkpoint holds no code: add them before it is restored",
+            );
+        }
+        if let Some(group) = own.keys().find(|group| !of_state.contains_key(*group)) {
+            return refuse(group, "were not there: remove them before it is restored");
+        }
+        match own.iter().find(|(group, vertices)| of_state.get(*group) != Some(vertices)) {
+            Some((group, _)) => refuse(group, "have other vertices"),
+            None => Ok(()),
+        }
     }
 
     /// Takes a state over that fits.

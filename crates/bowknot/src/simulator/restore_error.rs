@@ -26,6 +26,14 @@ pub enum RestoreError {
     /// Bodies asleep that there are not.
     #[error("its bodies asleep are not those of the scene")]
     Sleep,
+    /// Other custom elements.
+    #[error("its custom elements {group:?} {problem}")]
+    Elements {
+        /// The group.
+        group: String,
+        /// What differs, and what to do.
+        problem: &'static str,
+    },
     /// A search order of another number of vertices.
     #[error("its order of a search is not one of the scene")]
     Order,

@@ -10,6 +10,8 @@ mod bad_bodies;
 mod bad_input;
 /// Solids, strands, particles, friction and sequences, from scene to motion.
 mod bodies;
+/// Elements of a caller: carried along, asleep, in checkpoints, and laws that press bodies into each other.
+mod custom_elements;
 /// Pins, obstacles, forces and bodies changed by code.
 mod drive;
 /// Linear and quadratic elements of solids.

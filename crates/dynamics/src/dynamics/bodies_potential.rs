@@ -118,7 +118,7 @@ impl BodiesPotential {
         let motion = Motion { x, start, rate: terms.rate };
         for (chunk, gradient) in potential.gradient.chunks_mut(CHUNK).enumerate() {
             let nodes = chunk * CHUNK..chunk * CHUNK + gradient.len();
-            for set in &model.element_sets {
+            for set in model.sets() {
                 potential.elements += set.energy(chunk, motion);
                 set.add_gradient(chunk, motion, nodes.clone(), gradient);
             }

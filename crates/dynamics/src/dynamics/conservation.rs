@@ -16,7 +16,8 @@
 //! motion, vibrations, stays. Groups of bodies that touch nothing but each other then get a common rigid
 //! motion, which gives them exactly the linear and angular momentum that gravity and air leave them:
 //! tolerances of linear solves and contacts have no effect on these. Groups that touch obstacles without
-//! friction keep their linear momentum in the directions across all normals of these contacts.
+//! friction keep their linear momentum in the directions across all normals of these contacts. Groups on
+//! which custom elements exert outer forces keep the momenta that the time step gives them.
 //!
 //! Positions do not change, so no intersection can result. Energy is not gained: a body, or a group of bodies
 //! that touch, ends with at most the kinetic energy that it had at the start plus the work of gravity, air
@@ -210,7 +211,8 @@ impl Correction<'_> {
         let count = self.model.components.len();
         let component = |vertex: u32| self.model.component(self.model.vertex_node[vertex as usize]);
         let mut groups = Groups::new(count);
-        (0..count).filter(|&c| !free[c]).for_each(|c| groups.hold(c, Hold::Fully));
+        let is_held = |c: &usize| !free[*c] || self.model.held_components[*c];
+        (0..count).filter(is_held).for_each(|c| groups.hold(c, Hold::Fully));
         // Obstacles are in no component.
         let inside = |c: &usize| *c < count;
         for pair in &touching.pairs {

@@ -31,9 +31,10 @@ pub use newton::backend::{
 };
 
 use crate::body::{Body, BodyShape};
+use crate::custom::element::CustomElement;
 use crate::drag::DragSurfaces;
 use crate::elements::filter::Filter;
-use crate::error::StepError;
+use crate::error::{ModelError, StepError};
 use crate::linear::assembly::ElementModel;
 use crate::linear::block::BlockValues;
 use crate::linear::solver::LinearSolver;
@@ -139,7 +140,8 @@ impl Dynamics {
     /// the preconditioner of the backend.
     ///
     /// # Errors
-    /// [`StepError::QuadraticElements`] if a body has them: the CPU then computes the dynamics.
+    /// [`StepError::QuadraticElements`] if a body has them, [`StepError::CustomElements`] if there are any: the CPU then
+    /// computes the dynamics.
     pub fn set_backend(&mut self, backend: Option<Box<dyn NewtonBackend>>) -> Result<(), StepError> {
         (self.device, self.course.on_device) = (None, None);
         self.work.cache.clear();
@@ -147,6 +149,9 @@ impl Dynamics {
         let is_quadratic = |body: &&Body| matches!(body.shape, BodyShape::QuadraticSolid { .. });
         if let Some(body) = self.model.bodies().iter().find(is_quadratic) {
             return Err(StepError::QuadraticElements { body: body.name.clone() });
+        }
+        if let Some(group) = self.model.element_groups().first() {
+            return Err(StepError::CustomElements { group: group.name.clone() });
         }
         self.device = Some(Device { backend, has_model: false });
         Ok(())
@@ -160,6 +165,22 @@ impl Dynamics {
     /// What does Newton iterations; None if it is the CPU.
     pub fn backend(&self) -> Option<&dyn NewtonBackend> {
         self.device.as_ref().map(|device| &*device.backend)
+    }
+
+    /// Puts other custom elements in the place of those of a group, such as springs with other rest lengths. Call it between
+    /// time steps.
+    ///
+    /// # Errors
+    /// No group of that name, another number of elements, or an element with other vertices or another order of them. The
+    /// elements then stay.
+    pub fn replace_elements(
+        &mut self,
+        group: &str,
+        elements: Vec<Arc<dyn CustomElement>>,
+    ) -> Result<(), ModelError> {
+        self.model.replace_elements(group, elements)?;
+        self.work.cache.clear();
+        Ok(())
     }
 
     /// Sets the force on each vertex [N], 0 at first. It is kept until it is set again and takes effect at
@@ -251,7 +272,7 @@ impl Dynamics {
     /// been set.
     ///
     /// # Errors
-    /// A length is wrong, an entry is not finite, no step was begun, or the backend has failed.
+    /// A length is wrong, an entry is not finite, no step was begun, a custom element or the backend has failed.
     pub fn residual(
         &mut self,
         x: &[Point],
@@ -294,10 +315,23 @@ impl Dynamics {
         sets_trial: bool,
         run: impl Fn(&mut Newton<'_>) -> Answer<T> + Sync,
     ) -> Result<T, StepError> {
+        // What reports have found is not about this time step.
+        self.custom_fault();
         // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue;
         // from outside each would put this thread to sleep and wake it again (20 times the CPU time on a busy
         // machine, at 1,700 nodes).
-        rayon::scope(|_| self.with_bodies_in_pool(step, sets_trial, &run))
+        let done = rayon::scope(|_| self.with_bodies_in_pool(step, sets_trial, &run))?;
+        let Some(fault) = self.custom_fault() else { return Ok(done) };
+        // The cache lacks what was not finite.
+        self.work.cache.clear();
+        Err(fault)
+    }
+
+    /// The first custom element that has computed something that is not finite since the last call.
+    fn custom_fault(&self) -> Option<StepError> {
+        let ([group, index], quantity) = self.model.custom.as_ref()?.take_fault()?;
+        let group = self.model.element_groups().get(group)?.name.clone();
+        Some(StepError::CustomElement { group, index, quantity: quantity.name() })
     }
 
     fn with_bodies_in_pool<T>(
@@ -417,7 +451,7 @@ impl Dynamics {
     /// then solves the time step, inertia included, with the surface held.
     ///
     /// # Errors
-    /// A length is wrong, an entry is not finite, no step was begun, or the backend has failed.
+    /// A length is wrong, an entry is not finite, no step was begun, a custom element or the backend has failed.
     pub fn newton_target(
         &mut self,
         x: &[Point],

@@ -88,6 +88,7 @@ pub(crate) enum ElementKind {
     Solid,
     StrandStretching,
     StrandBending,
+    Custom,
 }
 
 /// Elements of type `E` with their places in the matrix.

@@ -21,7 +21,9 @@ pub struct ClothMaterial {
     /// Mass per area [kg/m^2]. Larger: heavier, slower to accelerate.
     pub density: f64,
     /// Young's modulus times thickness [N/m]; along the warp if `weft_stiffness` is given. Larger: stretches
-    /// less; the linear solve takes more iterations, about in proportion to the square root.
+    /// less; the linear solve takes more iterations, about in proportion to the square root. 0, without
+    /// stiffnesses of weft and shear: the cloth resists bending alone, for custom elements in place of its
+    /// membrane.
     pub stretch_stiffness: f64,
     /// Young's modulus times thickness along the weft [N/m], across `warp_direction`. Default: that along the
     /// warp.
@@ -213,7 +215,14 @@ impl Parameters for ClothMaterial {
             stretch_damping,
             bend_damping,
         } = *self;
-        positive(checks, &[("density", density, "kg/m2"), ("stretch_stiffness", stretch_stiffness, "N/m")]);
+        positive(checks, &[("density", density, "kg/m2")]);
+        non_negative(checks, &[("stretch_stiffness", stretch_stiffness, "N/m")]);
+        checks.require(
+            !self.is_woven() || stretch_stiffness != 0.0,
+            "stretch_stiffness",
+            format!("{stretch_stiffness} N/m"),
+            "must be above 0 where weft_stiffness or shear_stiffness is given",
+        );
         let optional = [("weft_stiffness", weft_stiffness), ("shear_stiffness", shear_stiffness)];
         for (field, value) in optional.into_iter().filter_map(|(field, value)| Some((field, value?))) {
             positive(checks, &[(field, value, "N/m")]);

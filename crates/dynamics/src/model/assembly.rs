@@ -99,7 +99,7 @@ impl<'a> Assembly<'a> {
             if material.is_woven() {
                 let (warp, weave) = (material.warp_direction.normalize(), Weave::new(material));
                 self.woven.extend(WovenTriangle::new(*nodes, &corners, &warp, weave, damping));
-            } else {
+            } else if material.stretch_stiffness > 0.0 {
                 self.triangles.extend(Triangle::new(*nodes, &corners, material.lame(), damping));
             }
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {

@@ -2,12 +2,16 @@
 
 mod assembly;
 mod check;
+mod joined;
 mod masses;
 pub(crate) mod measures;
 mod stiffness;
 
 use crate::body::{Body, BodyShape};
-use crate::elements::set::{AnyElementSet, ElementKind};
+use crate::custom::element::{CustomElement, ElementGroup};
+use crate::custom::groups::{check_groups, check_replacement};
+use crate::custom::set::CustomSet;
+use crate::elements::set::AnyElementSet;
 use crate::error::ModelError;
 use crate::linear::assembly::ElementModel;
 use crate::linear::block::BlockPattern;
@@ -18,8 +22,10 @@ use assembly::{Assembly, Elements};
 use bowknot_errors::Errors;
 use bowknot_geometry::{Point, Vector};
 use check::check;
+use joined::strand_nodes;
 use masses::masses;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Largest number of nodes in a leaf of the numbering; leaves are the aggregates of the coarse correction. As
 /// nodes are halved until they fit, a leaf has 32 to 64 nodes.
@@ -51,6 +57,11 @@ pub struct DynamicsModel {
     /// Whether each node belongs to strands only.
     pub(crate) strands: Vec<bool>,
     pub(crate) element_sets: Vec<Box<dyn AnyElementSet>>,
+    groups: Vec<ElementGroup>,
+    /// The elements of the groups; None if there are none.
+    pub(crate) custom: Option<CustomSet>,
+    /// Whether custom elements hold each component: their energy is not that of rigid motions.
+    pub(crate) held_components: Vec<bool>,
     pub(crate) pattern: BlockPattern,
     /// Bending [N/m].
     pub(crate) bending: ScalarForm,
@@ -84,6 +95,34 @@ impl DynamicsModel {
     /// Every error that was found, see [`ModelError`].
     pub fn new(rest_positions: Vec<Point>, bodies: Vec<Body>) -> Result<Self, Errors<ModelError>> {
         check(&rest_positions, &bodies)?;
+        Self::of(rest_positions, bodies, Vec::new())
+    }
+
+    /// The same bodies with these custom elements, in place of any that there were. It is built anew.
+    ///
+    /// Vertices that elements join are then of one component: its linear system is solved as one, and rotation
+    /// that implicit Euler loses is given back to it as a whole. Contacts take their stiffness from masses and
+    /// from the other elements alone.
+    ///
+    /// # Errors
+    /// Every error that was found: two groups of one name, elements without vertices or with more than
+    /// [`MAX_ELEMENT_VERTICES`](crate::MAX_ELEMENT_VERTICES), vertices that do not exist, are named twice or
+    /// belong to an obstacle.
+    pub fn with_elements(self, groups: Vec<ElementGroup>) -> Result<Self, Errors<ModelError>> {
+        let obstacle = |vertex: u32| {
+            let is_obstacle = self.obstacle.get(vertex as usize).copied().unwrap_or(false);
+            is_obstacle.then(|| self.body_name(vertex as usize))
+        };
+        Errors::check(check_groups(&groups, self.vertex_count(), obstacle))?;
+        Self::of(self.rest_positions, self.bodies, groups)
+    }
+
+    /// A model of what has been checked.
+    fn of(
+        rest_positions: Vec<Point>,
+        bodies: Vec<Body>,
+        groups: Vec<ElementGroup>,
+    ) -> Result<Self, Errors<ModelError>> {
         let count = rest_positions.len();
         let mut obstacle = vec![false; count];
         let mut vertex_body = vec![u32::MAX; count];
@@ -113,6 +152,10 @@ impl DynamicsModel {
                     }
                 });
             }
+            for pair in groups.iter().flat_map(|group| &group.elements).flat_map(|e| e.vertices().windows(2))
+            {
+                link(compact[pair[0] as usize], compact[pair[1] as usize]);
+            }
         });
         let node_vertex: Vec<u32> = ordering.order.iter().map(|&k| deformable[k as usize]).collect();
         let mut vertex_node = vec![NO_NODE; count];
@@ -122,20 +165,21 @@ impl DynamicsModel {
         let mut assembly = Assembly::new(&rest);
         bodies.iter().for_each(|body| assembly.add(&body.shape, &vertex_node));
         let Elements { mut element_sets, edges, bending, bending_damping } = assembly.finish();
+        let mut custom = Some(CustomSet::new(&groups, &vertex_node)).filter(|_| !groups.is_empty());
         let pattern = BlockPattern::from_cliques(rest.len(), |visit| {
             element_sets.iter().for_each(|set| set.for_each_clique(visit));
+            custom.iter().for_each(|set| set.for_each_clique(visit));
         });
         element_sets.iter_mut().for_each(|set| set.bind(rest.len(), &pattern));
+        custom.iter_mut().for_each(|set| set.bind(rest.len(), &pattern));
         let node_masses: Vec<f64> = node_vertex.iter().map(|&v| masses[v as usize]).collect();
         let component_masses = ordering.components.iter().flat_map(|component| {
             let mass = node_masses[component.start as usize..component.end as usize].iter().sum();
             std::iter::repeat_n(mass, component.len())
         });
-        let is_strand = |kind| matches!(kind, ElementKind::StrandStretching | ElementKind::StrandBending);
         let node_stiffness = stiffness::softest(&rest, &element_sets, &pattern, &bending);
-        let mut strands = joined(&element_sets, rest.len(), is_strand);
-        let others = joined(&element_sets, rest.len(), |kind| !is_strand(kind));
-        strands.iter_mut().zip(&others).for_each(|(strand, other)| *strand &= !other);
+        let strands = strand_nodes(&element_sets, custom.as_ref(), rest.len());
+        let held_components = held_components(custom.as_ref(), &ordering.components);
         Ok(Self {
             node_stiffness,
             strands,
@@ -149,6 +193,9 @@ impl DynamicsModel {
             node_vertex,
             vertex_node,
             element_sets,
+            groups,
+            custom,
+            held_components,
             pattern,
             bending,
             bending_damping,
@@ -183,6 +230,30 @@ impl DynamicsModel {
     /// Whether each vertex belongs to an obstacle.
     pub fn obstacle(&self) -> &[bool] {
         &self.obstacle
+    }
+
+    /// The custom elements.
+    pub fn element_groups(&self) -> &[ElementGroup] {
+        &self.groups
+    }
+
+    /// Puts elements with the same vertices in the place of those of a group.
+    pub(crate) fn replace_elements(
+        &mut self,
+        group: &str,
+        elements: Vec<Arc<dyn CustomElement>>,
+    ) -> Result<(), ModelError> {
+        let index = check_replacement(&self.groups, group, &elements)?;
+        self.custom.iter_mut().for_each(|set| set.replace(index, &elements));
+        self.groups[index].elements = elements;
+        self.held_components = held_components(self.custom.as_ref(), &self.components);
+        Ok(())
+    }
+
+    /// All elements, custom ones last.
+    pub(crate) fn sets(&self) -> impl Iterator<Item = &dyn AnyElementSet> {
+        let custom = self.custom.iter().map(|set| set as &dyn AnyElementSet);
+        self.element_sets.iter().map(|set| &**set).chain(custom)
     }
 
     /// The elements, for a backend that assembles matrices with these patches.
@@ -244,17 +315,12 @@ impl DynamicsModel {
     }
 }
 
-/// For each of `nodes` nodes, whether it belongs to an element of one of the `kinds`.
-fn joined(
-    element_sets: &[Box<dyn AnyElementSet>],
-    nodes: usize,
-    kinds: impl Fn(ElementKind) -> bool,
-) -> Vec<bool> {
-    let mut joined = vec![false; nodes];
-    for set in element_sets.iter().filter(|set| kinds(set.kind())) {
-        set.for_each_clique(&mut |clique| clique.iter().for_each(|&n| joined[n as usize] = true));
-    }
-    joined
+/// Which of the components custom elements hold.
+fn held_components(custom: Option<&CustomSet>, components: &[Range<u32>]) -> Vec<bool> {
+    let mut held = vec![false; components.len()];
+    let component = |node: u32| components.partition_point(|c| c.end <= node);
+    custom.into_iter().for_each(|set| set.for_each_held(&mut |nodes| held[component(nodes[0])] = true));
+    held
 }
 
 #[cfg(test)]

@@ -3,9 +3,9 @@
 
 use crate::common::{dynamics, sheet, with_tolerance};
 use bowknot_dynamics::{
-    AssemblySprings, Body, ClothMaterial, Dynamics, ElementModel, NewtonBackend, NewtonBackendError,
-    NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, RepulsionSpring, SolidMaterial, SolveLimits,
-    SpringKind, StepError, Trial, Watched,
+    AssemblySprings, Body, ClothMaterial, CustomElement, Dynamics, DynamicsModel, ElementGroup,
+    ElementMatrix, ElementModel, NewtonBackend, NewtonBackendError, NewtonSolve, NewtonStep, NewtonTarget,
+    OutOfBalance, RepulsionSpring, SolidMaterial, SolveLimits, SpringKind, StepError, Trial, Watched,
 };
 use bowknot_geometry::{Point, Vector, add_edge_middles};
 use nalgebra::Matrix3;
@@ -208,4 +208,34 @@ fn quadratic_elements_are_refused_by_name_and_stay_on_the_cpu() {
         fall(&mut dynamics, &rest, &[true].repeat(3).into_iter().chain([false; 7]).collect::<Vec<_>>(), 2)
     };
     assert_eq!(of(true), of(false));
+}
+
+/// A vertex that nothing pulls.
+#[derive(Debug)]
+struct Zero;
+
+impl CustomElement for Zero {
+    fn vertices(&self) -> &[u32] {
+        &[0]
+    }
+
+    fn energy(&self, _x: &[Point]) -> f64 {
+        0.0
+    }
+
+    fn gradient(&self, _x: &[Point], _gradient: &mut [Vector]) {}
+
+    fn hessian(&self, _x: &[Point], _hessian: &mut ElementMatrix<'_>) {}
+}
+
+#[test]
+fn custom_elements_are_refused_by_name_and_stay_on_the_cpu() {
+    let (rest, triangles) = sheet(0.1, 0.1, 2, 2);
+    let model = DynamicsModel::new(rest, vec![Body::cloth("sheet", triangles, ClothMaterial::cotton())]);
+    let model =
+        model.and_then(|model| model.with_elements(vec![ElementGroup::new("none", vec![Arc::new(Zero)])]));
+    let mut dynamics = Dynamics::new(model.expect("valid"), with_tolerance(1e-6)).expect("valid");
+    let error = dynamics.set_backend(Some(Box::new(Idle::default()))).expect_err("custom");
+    assert_eq!(error, StepError::CustomElements { group: "none".to_owned() });
+    assert!(dynamics.backend().is_none());
 }

@@ -3,6 +3,7 @@
 mod air;
 mod backend;
 mod common;
+mod custom;
 mod physics;
 mod potential;
 mod repulsion;

@@ -11,6 +11,7 @@ use super::friction::{ContactForce, FrictionMemory};
 use super::near_contacts::{MIN_PAIRS, NearContact, REACH, near_contacts, turned};
 use super::newton_bodies::NewtonBodies;
 use super::row_forces::RowForces;
+use crate::simulator::custom_elements::joined_vertices;
 use crate::simulator::stretch_limits::{HeldEdges, LimitedEdges, OverLimit};
 use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, DynamicsModel, Held, RepulsionSpring, StepError, Touching};
@@ -49,6 +50,8 @@ pub(crate) struct Contacts {
     /// The edges that have a stretch limit.
     limited: LimitedEdges,
     held: HeldEdges,
+    /// The vertices that custom elements join with others.
+    joined: Vec<u32>,
     /// Which vertices Newton's method solves together with their contacts.
     newton: NewtonBodies,
     /// Of these, the vertices whose forces the residual of a time step counts.
@@ -56,8 +59,8 @@ pub(crate) struct Contacts {
     /// Pairs that were in contact range at the start of the time step or after one of its collision stages,
     /// without those within a component.
     touching: Touching,
-    /// The component of each vertex, see [`DynamicsModel::components_of_vertices`]. A component is part of
-    /// one body.
+    /// The component of each vertex, see [`DynamicsModel::components_of_vertices`]. Without custom elements a
+    /// component is part of one body.
     components: Vec<u32>,
 }
 
@@ -67,7 +70,8 @@ impl Contacts {
         let filtered = resolver.scene().friction_model() == FrictionModel::Filter;
         let stiffness = if filtered { 0.0 } else { params.stiffness };
         let components = model.components_of_vertices();
-        let mut contacts = Self { stiffness, components, ..Self::default() };
+        let joined = joined_vertices(model.element_groups());
+        let mut contacts = Self { stiffness, components, joined, ..Self::default() };
         contacts.leave_out(world, resolver, &[]);
         contacts
     }
@@ -77,7 +81,7 @@ impl Contacts {
     pub fn leave_out(&mut self, world: &World, resolver: &Resolver, asleep: &[bool]) {
         self.limited = LimitedEdges::new(resolver.scene(), world);
         self.held = HeldEdges::default();
-        self.newton = NewtonBodies::new(world, asleep);
+        self.newton = NewtonBodies::new(world, asleep, &self.joined);
         self.counted = self.newton.flags().to_vec();
         self.found = FoundContacts::default();
     }

@@ -13,15 +13,16 @@ use bowknot_scene::world::World;
 /// The vertices that Newton's method solves in a time step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NewtonBodies {
-    /// Vertices of bodies that deform.
+    /// Vertices of bodies that deform, grains that custom elements join included.
     deformable: Vec<bool>,
     grains: Vec<bool>,
     solved: Vec<bool>,
 }
 
 impl NewtonBodies {
-    /// Of a world whose bodies `asleep` are obstacles; that has one entry per body, or none at all.
-    pub fn new(world: &World, asleep: &[bool]) -> Self {
+    /// Of a world whose bodies `asleep` are obstacles; that has one entry per body, or none at all. Grains
+    /// among the `joined` vertices are parts of a body that deforms.
+    pub fn new(world: &World, asleep: &[bool], joined: &[u32]) -> Self {
         let nothing = vec![false; world.positions.len()];
         let [mut deformable, mut grains] = [nothing.clone(), nothing];
         for (index, body) in world.bodies.iter().enumerate() {
@@ -30,6 +31,9 @@ impl NewtonBodies {
                 let all = if kind == BodyKind::Particles { &mut grains } else { &mut deformable };
                 body.vertices.clone().chain(body.interior.clone()).for_each(|v| all[v as usize] = true);
             }
+        }
+        for &vertex in joined {
+            deformable[vertex as usize] |= std::mem::take(&mut grains[vertex as usize]);
         }
         Self { solved: deformable.clone(), deformable, grains }
     }

@@ -33,6 +33,10 @@ pub struct Driven {
     /// Forces on all vertices of the world [N]; empty: none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub external_forces: Vec<Vector>,
+    /// By group of custom elements: the vertices of each. Their code is in no checkpoint; the caller adds it
+    /// before one is restored.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub elements: BTreeMap<String, Vec<Vec<u32>>>,
     /// Bodies that wake before the next time step; empty: none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pushed: Vec<bool>,

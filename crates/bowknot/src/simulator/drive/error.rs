@@ -1,5 +1,6 @@
 //! Why a change between time steps is refused.
 
+use bowknot_dynamics::ModelError;
 use bowknot_errors::{Errors, ParamError};
 
 /// Why a change between time steps is refused. The simulator is then as it was.
@@ -19,7 +20,7 @@ pub enum DriveError {
     /// The name is taken.
     #[error("{name:?} is the name of a {what} already; names must differ")]
     Taken {
-        /// "body or obstacle", or "pin".
+        /// "body or obstacle", "pin", or "group of custom elements".
         what: &'static str,
         /// The name given.
         name: String,
@@ -77,6 +78,30 @@ pub enum DriveError {
     Empty {
         /// The pin.
         pin: String,
+    },
+    /// A body has no such vertex.
+    #[error("body {body} has no vertex {vertex}; its mesh has {count}, counted from 0")]
+    Vertex {
+        /// The body.
+        body: String,
+        /// The vertex, as in its mesh.
+        vertex: u32,
+        /// Vertices of its mesh.
+        count: usize,
+    },
+    /// Custom elements are refused.
+    #[error("{}", .source.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Elements {
+        /// What is wrong with each.
+        source: Errors<ModelError>,
+    },
+    /// Custom elements act on a body that would be removed.
+    #[error("custom elements {group:?} act on body {body}; remove them first")]
+    Needed {
+        /// The group of elements.
+        group: String,
+        /// The body.
+        body: String,
     },
     /// Pins follow an obstacle that would be removed.
     #[error("{pin} follows obstacle {obstacle}; remove that pin first")]

@@ -39,8 +39,9 @@ impl Simulator {
     }
 
     /// The force that a pin exerted on each of its vertices in the last time step, in its order [N]; empty if
-    /// it has held in none since it was added, bodies have come or gone, or a checkpoint was restored, and
-    /// while a backend computes the dynamics. Of a body asleep they are those with which it fell asleep.
+    /// it has held in none since it was added, bodies or elements have come or gone, or a checkpoint was
+    /// restored, and while a backend computes the dynamics. Of a body asleep they are those with which it
+    /// fell asleep.
     ///
     /// # Errors
     /// No such pin.

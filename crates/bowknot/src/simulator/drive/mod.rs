@@ -14,6 +14,7 @@
 //! | `obstacles.rs` | where obstacles go |
 //! | `surroundings.rs` | gravity, wind, forces on vertices |
 //! | `state.rs` | velocities, and positions at once |
+//! | `elements.rs` | custom elements: added, replaced, removed |
 //! | `bodies.rs` | bodies and obstacles added and removed, materials, friction |
 //!
 //! `forces.rs` tells what acts on bodies, obstacles and pins.
@@ -27,6 +28,7 @@
 mod adopt;
 mod bodies;
 mod driven;
+mod elements;
 mod error;
 mod forces;
 mod names;

@@ -1,5 +1,6 @@
 //! A simulator of a changed scene, and how it takes the place of the one before.
 
+use super::elements::renumbered_elements;
 use super::error::DriveError;
 use super::renumber::renumbered;
 use crate::simulator::Simulator;
@@ -39,13 +40,14 @@ impl Simulator {
     }
 
     /// A simulator at the start of a scene, None for that which this one began with. Bodies that both scenes
-    /// have keep their rest shapes.
+    /// have keep their rest shapes, and the custom elements on them.
     pub(crate) fn rebuilt(&self, scene: Option<Box<Scene>>) -> Result<Self, SimulationError> {
         let world = match &scene {
             None => Arc::clone(&self.home.world),
             Some(scene) => Arc::new(world_of(scene, self.scene(), &self.world)?),
         };
-        let mut next = Self::at_start(world, self.home.clone(), scene)?;
+        let groups = renumbered_elements(&self.world, &world, self.dynamics.model().element_groups())?;
+        let mut next = Self::at_start(world, self.home.clone(), scene, groups)?;
         next.measured = self.measured;
         next.apply_filters()?;
         Ok(next)
@@ -54,6 +56,10 @@ impl Simulator {
     /// Lets another simulator take the place of this one, with the backends that this one has.
     pub(crate) fn give_way_to(&mut self, mut next: Self) -> Result<(), SimulationError> {
         let has_backend = self.dynamics_backend().is_some();
+        if let Some(group) = next.dynamics.model().element_groups().first().filter(|_| has_backend) {
+            let source = StepError::CustomElements { group: group.name.clone() };
+            return Err(SimulationError::target(self.step, source));
+        }
         if let Some(body) = next.world.quadratic_bodies().next().filter(|_| has_backend) {
             let source = StepError::QuadraticElements { body: body.to_owned() };
             return Err(SimulationError::target(self.step, source));

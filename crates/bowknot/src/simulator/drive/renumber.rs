@@ -7,7 +7,6 @@ use crate::simulator::contact_forces::{CarriedContacts, ContactForce, ContactMea
 use crate::simulator::sleep::SleepState;
 use bowknot_constraints::Feature;
 use bowknot_geometry::{Point, Vector};
-use bowknot_scene::Scene;
 use bowknot_scene::world::{Pin, World};
 use bowknot_twoway::lcp::DistanceLimit;
 use rustc_hash::FxHashMap;
@@ -32,7 +31,7 @@ pub(super) fn renumbered(simulator: &Simulator, next: &Simulator) -> Checkpoint 
         contacts: numbers.contacts(&simulator.carried()),
         sleep: SleepState::default(),
         order: Vec::new(),
-        driven: numbers.driven(&simulator.driven, next.driven.scene.clone(), pins),
+        driven: numbers.driven(&simulator.driven, &next.driven, pins),
     }
 }
 
@@ -48,7 +47,7 @@ fn positions_at(simulator: &Simulator, time: f64) -> Vec<Point> {
 }
 
 /// Numbers of one world in those of another.
-struct Numbers<'a> {
+pub(super) struct Numbers<'a> {
     old: &'a World,
     new: &'a World,
     /// By vertex; none for what is gone.
@@ -58,7 +57,7 @@ struct Numbers<'a> {
 }
 
 impl<'a> Numbers<'a> {
-    fn new(old: &'a World, new: &'a World) -> Self {
+    pub fn new(old: &'a World, new: &'a World) -> Self {
         let mut vertices = vec![None; old.positions.len()];
         for then in &old.bodies {
             let Some(now) = new.bodies.iter().find(|now| now.name == then.name) else { continue };
@@ -81,9 +80,10 @@ impl<'a> Numbers<'a> {
         new
     }
 
-    /// What was changed and is still there, with a changed scene and its pins.
-    fn driven(&self, before: &Driven, scene: Option<Box<Scene>>, pins: Vec<Pin>) -> Driven {
-        let mut driven = Driven { scene, pushed: Vec::new(), ..before.clone() };
+    /// What was changed and is still there, with scene and elements of the `next` simulator and its pins.
+    fn driven(&self, before: &Driven, next: &Driven, pins: Vec<Pin>) -> Driven {
+        let (scene, elements) = (next.scene.clone(), next.elements.clone());
+        let mut driven = Driven { scene, elements, pushed: Vec::new(), ..before.clone() };
         driven.grips.retain(|name, _| pins.iter().any(|pin| pin.name == *name));
         driven.obstacles.retain(|name, _| self.new.index_of(name).is_some());
         if !driven.external_forces.is_empty() {
@@ -93,7 +93,8 @@ impl<'a> Numbers<'a> {
         Driven { pins: Some(pins), ..driven }
     }
 
-    fn vertex(&self, vertex: u32) -> Option<u32> {
+    /// The number of a vertex; none if it is gone.
+    pub fn vertex(&self, vertex: u32) -> Option<u32> {
         self.vertices.get(vertex as usize).copied().flatten()
     }
 

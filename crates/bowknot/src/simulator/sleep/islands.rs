@@ -41,6 +41,8 @@ pub(crate) struct Sleep {
     distance: f64,
     /// Time steps at rest after which a body may sleep.
     steps: u32,
+    /// Pairs of bodies that custom elements join.
+    pub joined: Vec<[u32; 2]>,
     pub state: SleepState,
 }
 
@@ -55,11 +57,12 @@ pub(crate) struct Hold {
 
 impl Sleep {
     /// The rule for time steps of `dt` [s] and contacts at a distance of `delta` [m]; all bodies are awake.
-    pub fn new(params: &SleepParams, world: &World, delta: f64, dt: f64) -> Self {
+    pub fn new(params: &SleepParams, world: &World, delta: f64, dt: f64, joined: Vec<[u32; 2]>) -> Self {
         let bodies = world.bodies.len();
         Self {
             distance: params.distance * delta,
             steps: (params.time / dt).ceil().clamp(1.0, f64::from(u32::MAX)) as u32,
+            joined,
             state: SleepState {
                 origins: world.positions.clone(),
                 calm_steps: vec![0; bodies],
@@ -148,6 +151,7 @@ impl Sleep {
                 restless[body] |= !is_obstacle(body);
             }
         }
+        self.joined.iter().for_each(|&[a, b]| sets.join(a, b));
         let body_of = |vertex: u32| world.collision.vertex_body()[vertex as usize] as usize;
         for pair in &touching.pairs {
             let [a, b] = pair.map(body_of);

@@ -12,9 +12,10 @@ pub(crate) use approach::Motion;
 pub use islands::SleepState;
 
 use super::contact_forces::ContactForce;
+use super::custom_elements::moving_elements;
 use super::error::SimulationError;
 use approach::BodyElements;
-use bowknot_dynamics::{Dynamics, Energies};
+use bowknot_dynamics::{Dynamics, DynamicsModel, Energies};
 use bowknot_geometry::Point;
 use bowknot_scene::SleepParams;
 use bowknot_scene::world::World;
@@ -53,14 +54,21 @@ pub(crate) struct Awake {
 }
 
 impl SleepingBodies {
-    pub fn new(params: &SleepParams, world: &World, resolver: &Resolver, dt: f64) -> Option<Self> {
+    /// Custom elements have `joined` pairs of bodies.
+    pub fn new(
+        params: &SleepParams,
+        world: &World,
+        resolver: &Resolver,
+        dt: f64,
+        joined: Vec<[u32; 2]>,
+    ) -> Option<Self> {
         if !params.enabled {
             return None;
         }
         let scene = resolver.scene();
         let bodies = world.bodies.len();
         Some(Self {
-            sleep: Sleep::new(params, world, scene.lengths().delta, dt),
+            sleep: Sleep::new(params, world, scene.lengths().delta, dt, joined),
             elements: BodyElements::new(world),
             margins: (0..bodies as u32).map(|body| scene.spacing().margin(body)).collect(),
             asleep: vec![false; bodies],
@@ -68,6 +76,11 @@ impl SleepingBodies {
             hold: Hold::default(),
             predicted: Vec::new(),
         })
+    }
+
+    /// Pairs of bodies that custom elements join; both sleep or none.
+    pub fn joined(&self) -> &[[u32; 2]] {
+        &self.sleep.joined
     }
 
     /// The dynamics of the bodies that are awake, if some sleep.
@@ -109,8 +122,16 @@ impl Awake {
         all: &Dynamics,
         positions: &[Point],
     ) -> Result<Self, SimulationError> {
-        let awake = world.dynamics_model_with_obstacles(|body| asleep[body])?;
-        let resting = world.dynamics_model_with_obstacles(|body| !asleep[body])?;
+        let groups = all.model().element_groups();
+        let with_elements = |model: DynamicsModel| {
+            if groups.is_empty() {
+                return Ok(model);
+            }
+            let moving = moving_elements(model.obstacle(), groups);
+            model.with_elements(moving).map_err(SimulationError::elements)
+        };
+        let awake = with_elements(world.dynamics_model_with_obstacles(|body| asleep[body])?)?;
+        let resting = with_elements(world.dynamics_model_with_obstacles(|body| !asleep[body])?)?;
         let gravity = all.params().environment.gravity;
         let weight = |(v, (&mass, x)): (usize, (&f64, &Point))| {
             // Vertices of obstacles have no mass here.

@@ -38,12 +38,19 @@ impl Newton<'_> {
         let strands = self.model.has_strands();
         let mut finished = false;
         while !finished && info.iterations <= self.params.newton.correcting_iterations {
-            let before = (info.step_length < 1.0).then_some(info.energy_after);
+            let mut before = (info.step_length < 1.0).then_some(info.energy_after);
             if before.is_some() {
                 self.bodies.keep_trial()?;
-                self.place(1.0)?;
+                let (energy, _) = self.place(1.0)?;
+                if self.is_defined(energy) {
+                    self.bodies.start_from_trial()?;
+                } else {
+                    self.bodies.start_from_kept_trial()?;
+                    before = None;
+                }
+            } else {
+                self.bodies.start_from_trial()?;
             }
-            self.bodies.start_from_trial()?;
             let mut next = self.iterate(Accuracy::Inexact)?;
             if before.is_some_and(|before| next.energy_after >= before) {
                 self.bodies.start_from_kept_trial()?;

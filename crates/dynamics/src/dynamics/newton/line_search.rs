@@ -39,8 +39,9 @@ impl Newton<'_> {
             let rounding = self.energies.rounding;
             let noise = ENERGY_ROUNDING * scale.max(terms) + LIKELY_ROUNDING * rounding;
             let slack = noise.max(rounding);
-            let passes =
-                energy <= before - self.params.newton.line_search_decrease * length * predicted + slack;
+            // The slack is infinite, too, where the energy is.
+            let passes = self.is_defined(energy)
+                && energy <= before - self.params.newton.line_search_decrease * length * predicted + slack;
             if passes || accept {
                 (info.energy_after, info.step_length) = (energy, length);
                 let model = predicted * length * (1.0 - 0.5 * length);
@@ -57,6 +58,12 @@ impl Newton<'_> {
         self.place(best.1)?;
         tracing::debug!(step_length = best.1, "no trial of the line search decreased the energy enough");
         Ok(())
+    }
+
+    /// Whether all custom elements are defined at a trial of this `energy` [J]. Without them only an overflow is
+    /// infinite, and the target that it leads to is refused.
+    pub fn is_defined(&self, energy: f64) -> bool {
+        energy.is_finite() || self.model.custom.is_none()
     }
 
     /// Places the trial. Returns the potential there with springs, and the sum of the sizes of its parts, to

@@ -50,7 +50,7 @@ impl CpuBodies<'_> {
                 }
                 rows.gradient[row] = node_gradient(model, params, step, motion, node);
             }
-            for set in &model.element_sets {
+            for set in model.sets() {
                 set.linearize(chunk, motion, filter, &mut rows);
             }
         });

@@ -2,7 +2,7 @@
 
 use super::state::Step;
 use crate::drag::Drag;
-use crate::groups::{Group, Groups};
+use crate::groups::{Group, Groups, Hold};
 use crate::model::DynamicsModel;
 use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
@@ -57,11 +57,14 @@ impl Inertia<'_> {
     }
 }
 
-/// The groups of components that springs join, of which no node is held by a keyframe, and which can move
-/// freely in some direction.
+/// The groups of components that springs join, of which no node is held by a keyframe or a custom element,
+/// and which can move freely in some direction.
 pub(crate) fn free_groups(model: &DynamicsModel, repulsion: &Repulsion, free: &[bool]) -> Vec<Group> {
     let mut groups = Groups::new(model.components.len());
     repulsion.join(model, &mut groups, true);
+    // Forces of elements that are not those of rigid motions have a sum.
+    let held = model.held_components.iter().enumerate().filter(|(_, held)| **held);
+    held.for_each(|(component, _)| groups.hold(component, Hold::Fully));
     let mut groups = groups.free();
     groups.retain(|group| nodes_of(model, group).all(|n| free[n]));
     groups

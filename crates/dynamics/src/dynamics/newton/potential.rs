@@ -33,7 +33,7 @@ impl CpuBodies<'_> {
                         }
                     }
                 }
-                let elements: f64 = model.element_sets.iter().map(|set| set.energy(chunk, motion)).sum();
+                let elements: f64 = model.sets().map(|set| set.energy(chunk, motion)).sum();
                 [kinetic, elements + model.bending.chunk_energy(chunk, x)]
             })
             .collect();

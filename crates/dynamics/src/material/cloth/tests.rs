@@ -47,7 +47,7 @@ fn all_bad_values_are_named() {
     assert_eq!(
         errors.to_string(),
         "density = 0 kg/m2: must be finite and above 0\n\
-         stretch_stiffness = NaN N/m: must be finite and above 0\n\
+         stretch_stiffness = NaN N/m: must be finite and at least 0\n\
          weft_stiffness = 0 N/m: must be finite and above 0\n\
          shear_stiffness = -1 N/m: must be finite and above 0\n\
          warp_direction = [0.0, 0.0, 0.0]: must be finite and not zero\n\
