@@ -141,3 +141,8 @@ fn is_above(x: &[Point]) -> bool {
         apart.width > 0.0 && x[0].z > 0.0
     })
 }
+
+#[test]
+fn a_triangle_slides_as_far_as_coulomb_says() {
+    main().unwrap_or_else(|error| panic!("{error}"));
+}
