@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct FrictionPair {
     /// Names of two bodies or obstacles; twice the same for a body's contacts with itself.
     pub bodies: [String; 2],
-    /// Coefficient of Coulomb friction between them [1], at least 0, in place of the mean of their own.
+    /// Coefficient of Coulomb friction between them [1], at least 0, in place of the geometric mean of their own.
     /// Default 0.
     pub friction: f64,
 }

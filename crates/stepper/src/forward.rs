@@ -198,7 +198,7 @@ impl Forward {
 
     /// Lists the pairs anew, around the present positions: every pair that could meet while each vertex v
     /// moves by at most `radii[v]` [m]. Larger radii mean fewer searches and more pairs. A vertex with radius
-    /// 0 does not move.
+    /// 0 does not move, whatever its target: obstacles that move need radii too.
     ///
     /// All minimum separations are those of the options again.
     ///
@@ -285,7 +285,8 @@ impl Forward {
     }
 
     /// The listed pairs, with their contact geometry at the present positions and their minimum separations:
-    /// what constraints are built from.
+    /// what constraints and contact forces are built from. Forces that act up to a gap need a list of all pairs
+    /// within it: search again before, with radii whose sum over both sides is at least the gap.
     pub fn contacts(&mut self) -> Contacts<'_> {
         self.separate();
         let Self { pairs, separations, min_separations, .. } = self;

@@ -26,6 +26,10 @@ impl Simulator {
     /// Goes on from a state of the same scene, with what a program had changed then and without what it has
     /// changed since.
     ///
+    /// Steps from the same state have the same bits. Who measures a stiffness by differences of restored runs
+    /// switches sleep off (`solver.sleep.enabled = false`): how long bodies have been at rest is part of the
+    /// state, and bodies asleep do not yield.
+    ///
     /// **The state must be free of intersections**, as that of every checkpoint is. One that is not stays so,
     /// or worse: [`Self::restore_checked`] looks.
     ///

@@ -34,6 +34,10 @@ pub struct ContactForces {
 /// the normal force, but not above that at a fifth of the room. With [`RepulsionSpring::friction_ratio`] it begins
 /// with the friction at the start.
 ///
+/// **Vertices that are led**, such as those of an obstacle that moves: they reach their places within the time step,
+/// so that the right-hand side of Newton's method has minus the Hessian times their displacement, and a line search
+/// compares potentials with them there. Else what they press on looks like a rise of energy, and nothing moves.
+///
 /// ```
 /// use bowknot_dynamics::geometry::{PairKind, Point, Vector, separation};
 /// use bowknot_dynamics::{ContactLaw, ContactPotential, RepulsionSpring};

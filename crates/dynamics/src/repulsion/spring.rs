@@ -59,11 +59,13 @@ pub struct RepulsionSpring {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 pub struct ContactLaw {
-    /// See [`RepulsionSpring::stiffness`]. For a [`crate::ContactPotential`] in N/m.
+    /// See [`RepulsionSpring::stiffness`]. For a [`crate::ContactPotential`] in N/m: begin with the mass of a vertex
+    /// over the square of the time step.
     pub stiffness: f64,
     /// Gap from which on nothing acts [m].
     pub reach: f64,
-    /// Gap at which the force becomes infinite [m], below the reach.
+    /// Gap at which the force becomes infinite [m], below the reach. It may be negative: the force then stays
+    /// moderate at contact, which leaves what is nearer to a collision stage that keeps distances.
     pub floor: f64,
     /// Coefficient of friction mu [1].
     pub friction: f64,

@@ -1,5 +1,6 @@
 //! A mesh that is given by its arrays.
 
+use super::mesh::TriangleMesh;
 use crate::kind::BodyKind;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, check_elements};
@@ -23,6 +24,13 @@ pub struct MeshArrays {
     /// Strand edges. Default none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub edges: Vec<[u32; 2]>,
+}
+
+impl From<TriangleMesh> for MeshArrays {
+    /// The surface, such as of [`super::RoundCones`], whose single cone is a capsule.
+    fn from(mesh: TriangleMesh) -> Self {
+        Self::surface(mesh.positions, mesh.triangles)
+    }
 }
 
 impl MeshArrays {

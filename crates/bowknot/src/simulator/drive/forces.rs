@@ -18,7 +18,8 @@ impl Simulator {
     }
 
     /// What all [contacts](Self::contacts) exert on a body, an obstacle or a half-space, with the torque
-    /// about a point: the load on a finger of a robot.
+    /// about a point [m]: the load on a finger of a robot, in the axes of the scene. Each force acts at the
+    /// contact's point on the body that is asked for; the points of both sides are a gap apart.
     ///
     /// # Errors
     /// No such body or obstacle.

@@ -13,7 +13,9 @@ use std::sync::Arc;
 impl Simulator {
     /// Leads an obstacle as a rigid body, such as a finger of a robot: to where the `pose` takes it from its
     /// place in the scene, at the end of the next time step. It stays there until it is led elsewhere. This
-    /// replaces the motion that the scene has for it.
+    /// replaces the motion that the scene has for it. Rotations of the pose are about the origin of the scene.
+    /// Where the obstacle has got is in [`Self::positions`]: it waits where something that deforms is in its way.
+    /// **Obstacles go through each other**, such as a finger through a table.
     ///
     /// All of its vertices move on straight lines, so a turn of more than some tens of degrees in a time step
     /// shrinks it on the way.

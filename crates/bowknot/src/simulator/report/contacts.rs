@@ -90,7 +90,7 @@ impl Contact {
     }
 }
 
-/// A force, and its torque about a point.
+/// A force, and its torque about a point, both in the axes of the scene, whatever the pose of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Wrench {
     /// The force [N].

@@ -44,7 +44,7 @@ pub struct StepStatistics {
     pub converged: bool,
     /// Smallest distance over the candidate pairs at the end [m]; none if there are none.
     pub min_gap_m: Option<f64>,
-    /// Largest ratio of an edge's length to its rest length at the end.
+    /// Largest ratio of an edge's length to its rest length at the end, over cloth and strands; 0 without any.
     pub max_stretch: f64,
     /// Largest ratio of an edge's length to its length at the start, over the collision problems.
     pub max_step_stretch: f64,
