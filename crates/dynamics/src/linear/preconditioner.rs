@@ -20,13 +20,12 @@ pub(crate) struct Levels {
 }
 
 impl Levels {
-    /// Prepares for `system`, linearized at positions `x`. With `keeps_coarse` the coarse correction stays that of the
-    /// last call.
-    pub fn build(&mut self, system: &System<'_>, x: &[Vector], keeps_coarse: bool) {
+    /// Prepares for `system`, linearized at positions `x`.
+    pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
         if let Some(direct) = &mut self.direct {
             direct.build(system);
         }
-        if let Some(coarse) = self.coarse.as_mut().filter(|_| !keeps_coarse) {
+        if let Some(coarse) = &mut self.coarse {
             coarse.build(system, x);
         }
     }

@@ -16,10 +16,6 @@ use super::preconditioner::Levels;
 use super::system::System;
 use bowknot_geometry::Vector;
 
-/// Linear solves of a time step that one coarse correction serves. More: fewer factorizations, but more
-/// iterations, as contacts and folds change.
-const SOLVES_PER_COARSE: usize = 2;
-
 /// A linear system H x = b.
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'a> {
@@ -36,10 +32,6 @@ pub(crate) struct Problem<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct LinearSolver {
     levels: Levels,
-    /// The free nodes that the coarse correction was built for in this time step, and the solves that it has
-    /// served; empty before.
-    coarse_of: Vec<bool>,
-    served: usize,
     /// Whether single precision is left out: for models with strands, whose stiffness is up to 10^7 times
     /// their inertia, and for the rest of a time step in which it was not enough.
     precise: bool,
@@ -62,7 +54,6 @@ impl LinearSolver {
     /// Forgets what depends on the time step before.
     pub fn begin_step(&mut self) {
         self.precise = self.levels.direct.is_some();
-        self.coarse_of.clear();
     }
 
     /// Computes in double precision for the rest of the time step.
@@ -70,16 +61,9 @@ impl LinearSolver {
         self.precise = true;
     }
 
-    /// Builds the preconditioner for `system`, linearized at positions `x`. A coarse correction of this time step
-    /// that has served fewer than so many solves is kept: it need not be that of the present matrix.
-    fn prepare(&mut self, system: &System<'_>, x: &[Vector], solves: usize) {
-        let keeps_coarse = self.coarse_of == system.free && self.served < solves;
-        self.levels.build(system, x, keeps_coarse);
-        if !keeps_coarse {
-            self.coarse_of.clear();
-            self.coarse_of.extend_from_slice(system.free);
-            self.served = 0;
-        }
+    /// Builds the preconditioner for `system`, linearized at positions `x`.
+    fn prepare(&mut self, system: &System<'_>, x: &[Vector]) {
+        self.levels.build(system, x);
         if self.precise {
             self.double.fill_preconditioner(system, &self.levels);
         } else {
@@ -87,10 +71,9 @@ impl LinearSolver {
         }
     }
 
-    /// Sets `z` to the preconditioner of `system`, linearized at positions `x`, times `r`. A coarse correction of
-    /// this time step is good enough.
+    /// Sets `z` to the preconditioner of `system`, linearized at positions `x`, times `r`.
     pub fn precondition(&mut self, system: &System<'_>, x: &[Vector], r: &[Vector], z: &mut [Vector]) {
-        self.prepare(system, x, usize::MAX);
+        self.prepare(system, x);
         let (factor, whole) = (unit_factor(r), Parts::whole(r.len()));
         if self.precise {
             self.double.begin(&mut self.levels, &whole, r, factor);
@@ -126,8 +109,7 @@ impl LinearSolver {
         limits: &Limits,
         x: &mut [Vector],
     ) -> CgInfo {
-        self.prepare(system, positions, SOLVES_PER_COARSE);
-        self.served += 1;
+        self.prepare(system, positions);
         x.fill(Vector::zeros());
         self.residual.clear();
         self.residual.extend_from_slice(b);
