@@ -333,7 +333,7 @@ fn page() -> String {
 
     page.section(
         "[[contact.friction_pairs]]",
-        "Friction between two bodies, in place of the mean of their own.",
+        "Friction between two bodies, in place of the geometric mean of their own.",
     );
     page.head(false);
     page.rows("FrictionPair", &FrictionPair::default(), None, all);
