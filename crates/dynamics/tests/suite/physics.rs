@@ -1,7 +1,7 @@
 //! Cases with known answers: free fall, conservation, hanging and clamped strips, determinism.
 
 use crate::common::{cloth_model, dynamics, sheet, weightless, with_gravity, with_tolerance};
-use bowknot_dynamics::{Body, ClothMaterial, Dynamics, DynamicsParams, HessianFilter};
+use bowknot_dynamics::{Body, ClothMaterial, Dynamics, DynamicsParams, HessianFilter, PreconditionerKind};
 use bowknot_geometry::{Point, Vector};
 
 /// A sheet of nearly equilateral triangles: every second row is shifted by half a cell.
@@ -51,6 +51,25 @@ fn floating(params: DynamicsParams, material: ClothMaterial) -> (Dynamics, Vec<P
             + Vector::z().cross(&p.coords) * 5.0
     });
     (dynamics, x.collect(), v.collect())
+}
+
+#[test]
+fn both_preconditioners_lead_to_the_same_target() {
+    let target = |kind: PreconditionerKind| {
+        let mut params = with_tolerance(1e-9);
+        params.newton.preconditioner = kind;
+        let (mut dynamics, x, v) = floating(params, ClothMaterial::cotton());
+        dynamics.begin_step(&x, &v, 0.01).expect("valid");
+        let (held, mut y) = (vec![false; x.len()], x.clone());
+        let info = dynamics.newton_target(&x, &held, &x, &mut y).expect("valid");
+        assert!(info.cg.converged, "{info:?}");
+        (y, info.cg.iterations)
+    };
+    let (by_blocks, many) = target(PreconditionerKind::BlockJacobi);
+    let (by_levels, few) = target(PreconditionerKind::TwoLevel);
+    let apart = by_blocks.iter().zip(&by_levels).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(apart < 1e-6, "{apart} m");
+    assert!(many > 2 * few, "{many} and {few} iterations");
 }
 
 #[test]
