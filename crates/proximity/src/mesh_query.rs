@@ -162,9 +162,9 @@ impl MeshQuery {
 
     /// Whether a closed surface contains the point or winds around it, decided exactly.
     ///
-    /// `None` for a mesh that is not [closed](Self::is_closed), one with a vertex that is not finite, and a point
-    /// that is not finite: the answer would then depend on a direction. Both orientations will do. Where closed
-    /// parts of one orientation overlap, the inside is that of their union; a part of the other orientation
+    /// `None` if the mesh is not [closed](Self::is_closed): the answer would depend on the direction in which one
+    /// looks. Also `None` if the point or a vertex is not finite. Triangles may face outward or inward. Where
+    /// closed parts of one orientation overlap, the inside is that of their union; a part of the other orientation
     /// inside another is a hole.
     pub fn is_inside(&self, point: &Point) -> Option<bool> {
         if self.is_closed && self.is_placed { inside::is_inside(self.placed(), point) } else { None }

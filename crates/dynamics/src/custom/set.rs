@@ -4,7 +4,7 @@
 use super::element::{CustomElement, ElementGroup, MAX_ELEMENT_VERTICES, Quantity, derivatives};
 use super::filter::filter_matrix;
 use crate::elements::filter::Filter;
-use crate::elements::set::{AnyElementSet, Displaced, ElementKind, Motion, Rows};
+use crate::elements::set::{AnyElementSet, Displaced, ElementKind, Motion, Rows, touching_chunks};
 use crate::linear::assembly::ElementModel;
 use crate::linear::block::BlockPattern;
 use crate::nodes::CHUNK;
@@ -138,23 +138,13 @@ impl AnyElementSet for CustomSet {
     }
 
     fn bind(&mut self, node_count: usize, pattern: &BlockPattern) {
-        let mut chunks = vec![Vec::new(); node_count.div_ceil(CHUNK)];
-        for (index, placed) in self.elements.iter_mut().enumerate() {
+        for placed in &mut self.elements {
             let nodes = &placed.nodes;
             let slot = |a: u32, b: u32| if a == b { u32::MAX } else { pattern.slot(a, b) };
             placed.slots = nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| slot(a, b))).collect();
-            for (k, &node) in nodes.iter().enumerate() {
-                let chunk = node as usize / CHUNK;
-                if nodes[..k].iter().all(|&other| other as usize / CHUNK != chunk) {
-                    chunks[chunk].push(index as u32);
-                }
-            }
         }
-        self.starts.truncate(1);
-        for chunk in &chunks {
-            self.starts.push(self.starts[self.starts.len() - 1] + chunk.len());
-        }
-        self.touching = chunks.concat();
+        let nodes = self.elements.iter().map(|placed| &placed.nodes);
+        (self.touching, self.starts) = touching_chunks(node_count, nodes);
     }
 
     fn energy(&self, chunk: usize, motion: Motion<'_>) -> f64 {

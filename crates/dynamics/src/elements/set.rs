@@ -142,23 +142,7 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
         });
         self.slots = slots.collect();
 
-        let mut chunks = vec![Vec::new(); node_count.div_ceil(CHUNK)];
-        for (index, element) in self.elements.iter().enumerate() {
-            let nodes = element.nodes();
-            for (k, &node) in nodes.iter().enumerate() {
-                let chunk = node as usize / CHUNK;
-                if nodes[..k].iter().all(|&other| other as usize / CHUNK != chunk) {
-                    chunks[chunk].push(index as u32);
-                }
-            }
-        }
-        self.starts = std::iter::once(0)
-            .chain(chunks.iter().scan(0, |end, chunk| {
-                *end += chunk.len();
-                Some(*end)
-            }))
-            .collect();
-        self.touching = chunks.concat();
+        (self.touching, self.starts) = touching_chunks(node_count, self.elements.iter().map(E::nodes));
     }
 
     fn energy(&self, chunk: usize, motion: Motion<'_>) -> f64 {
@@ -241,6 +225,26 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
     fn len(&self) -> usize {
         self.elements.len()
     }
+}
+
+/// From the nodes of each element: the elements that touch chunk c, ascending, at `starts[c]..starts[c + 1]`.
+pub(crate) fn touching_chunks(
+    node_count: usize,
+    elements: impl Iterator<Item = impl AsRef<[u32]>>,
+) -> (Vec<u32>, Vec<usize>) {
+    let mut chunks = vec![Vec::new(); node_count.div_ceil(CHUNK)];
+    for (index, nodes) in elements.enumerate() {
+        let nodes = nodes.as_ref();
+        for (k, &node) in nodes.iter().enumerate() {
+            let chunk = node as usize / CHUNK;
+            if nodes[..k].iter().all(|&other| other as usize / CHUNK != chunk) {
+                chunks[chunk].push(index as u32);
+            }
+        }
+    }
+    let mut starts = vec![0];
+    chunks.iter().for_each(|chunk| starts.push(starts[starts.len() - 1] + chunk.len()));
+    (chunks.concat(), starts)
 }
 
 /// Adds gradient and Hessian of an element to those of its `nodes` that are among the rows.
