@@ -206,8 +206,7 @@ fn sweeps_of_rows_without_a_color_are_those_of_the_twin() {
         collision.begin(&Call::toward(&target)).unwrap();
         let report = collision.step().unwrap();
         assert!(report.contact_rows > 3000 && report.pressing > 1000, "{report:?}");
-        let differences = collision.engine().differences();
-        assert!(differences.len() < 20, "{}: {:?}", differences.len(), &differences[..3]);
+        assert_eq!(collision.engine().differing_stages(), []);
         let aims = [(); 2].map(|()| {
             let mut collision = with_settings(device(), &scene, &Constraints::default(), &settings).unwrap();
             collision.begin(&Call::toward(&target)).unwrap();
