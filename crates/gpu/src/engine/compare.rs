@@ -89,7 +89,7 @@ impl ComparingEngine {
         &self.differences
     }
 
-    /// The stages of whose words more than [`MOST_DIFFERENT`] differed by more than rounding, and these shares.
+    /// The stages of whose words more than 0.2 % differed by more than rounding, and these shares [1].
     pub fn differing_stages(&self) -> Vec<(&'static str, f64)> {
         let mut counts = BTreeMap::new();
         self.differences.iter().for_each(|difference| *counts.entry(difference.stage).or_insert(0) += 1);
