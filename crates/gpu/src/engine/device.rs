@@ -64,7 +64,7 @@ impl DeviceEngine {
     pub fn open(adapter: &Adapter) -> Result<Self, GpuError> {
         let opened = Arc::new(Opened::new(adapter)?);
         // A program on the CPU takes as long as it takes.
-        let time_limit = (!adapter.is_software()).then_some(TIME_LIMIT);
+        let time_limit = (!opened.is_software).then_some(TIME_LIMIT);
         Ok(Self::of(opened, time_limit))
     }
 
@@ -109,6 +109,11 @@ impl DeviceEngine {
     /// Whether the device has time stamps.
     pub fn has_time_stamps(&self) -> bool {
         self.opened.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Whether the device is a program on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.opened.is_software
     }
 
     /// Name of the adapter.

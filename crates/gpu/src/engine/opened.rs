@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[derive(Debug)]
 pub(super) struct Opened {
     pub name: String,
+    pub is_software: bool,
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     /// Whether stages get their parameters as immediates, not in a buffer.
@@ -51,6 +52,7 @@ impl Opened {
         let has_immediates = device.features().contains(wgpu::Features::IMMEDIATES);
         Ok(Self {
             name,
+            is_software: adapter.is_software(),
             device,
             queue,
             has_immediates,
