@@ -13,6 +13,23 @@ pub(crate) struct Linearization<const N: usize> {
     pub hessian: [[Matrix3<f64>; N]; N],
 }
 
+impl Linearization<3> {
+    /// From the gradients by nodes 1 and 2 and the blocks (1, 1), (1, 2) and (2, 2). Translations store no
+    /// energy: the rows of node 0 are minus the sum of the others.
+    pub fn of_translations(energy: f64, [f1, f2]: [Vector; 2], [h11, h12, h22]: [Matrix3<f64>; 3]) -> Self {
+        let (h01, h02) = (-(h11 + h12.transpose()), -(h12 + h22));
+        let (zero, h00) = (Matrix3::zeros(), -(h01 + h02));
+        Self {
+            energy,
+            gradient: [-(f1 + f2), f1, f2],
+            hessian: [[h00, h01, h02], [zero, h11, h12], [zero, zero, h22]],
+        }
+    }
+}
+
+/// Number of elements that [`Element::linearize_batch`] takes.
+pub(crate) const BATCH: usize = 8;
+
 /// An element over N nodes.
 pub(crate) trait Element<const N: usize>: Send + Sync {
     /// The nodes of the element.
@@ -38,6 +55,27 @@ pub(crate) trait Element<const N: usize>: Send + Sync {
         start: Option<Start<'_, N>>,
         filter: Filter,
     ) -> Linearization<N>;
+
+    /// Calls `visit` with the index of each of the `elements` and with [`Self::linearize_in`] at `x` and `start`
+    /// and the `rate` of [`Start`], 0 without damping; in any order. What it is called with for an element depends
+    /// on that element alone.
+    fn linearize_batch(
+        elements: [&Self; BATCH],
+        x: &[[Vector; N]; BATCH],
+        start: &[[Vector; N]; BATCH],
+        rate: f64,
+        filter: Filter,
+        visit: &mut impl FnMut(usize, &Linearization<N>),
+    ) {
+        for first in (0..BATCH).step_by(4) {
+            let four = std::array::from_fn(|k| elements[first + k]);
+            let frames = Self::frames(four, &std::array::from_fn(|k| x[first + k]));
+            for (k, frame) in (first..).zip(&frames) {
+                let start = (rate > 0.0).then_some(Start { x: &start[k], rate });
+                visit(k, &elements[k].linearize_in(frame, &x[k], start, filter));
+            }
+        }
+    }
 
     /// The gradient of [`Self::energy`] [N], up to rounding that of [`Self::linearize_in`].
     fn gradient(&self, x: &[Vector; N], start: Option<Start<'_, N>>) -> [Vector; N];

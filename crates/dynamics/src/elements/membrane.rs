@@ -13,7 +13,7 @@ use wide::f64x4;
 pub(super) const MIN_SINGULAR_VALUE: f64 = 0.05;
 
 /// Singular values up to this count as zero: their reciprocals, and the squares on the way, must be finite.
-const ZERO_SINGULAR_VALUE: f64 = 1e-150;
+pub(super) const ZERO_SINGULAR_VALUE: f64 = 1e-150;
 
 /// F = s1 u1 v1^T + s2 u2 v2^T, with v1 = (c, s) and v2 = (-s, c).
 #[derive(Clone, Copy, Default)]
@@ -198,38 +198,23 @@ pub(super) fn assemble(
     let (k11, k12, k22) = (corner(0, 0), corner(0, 1), corner(1, 1));
     let basis = Matrix3::from_columns(&[u1, u2, u1.cross(&u2)]);
     let [[p11, p12], [p21, p22]] = stress;
-    let mut out = Linearization {
-        energy: area * energy,
-        gradient: [Vector::zeros(); 3],
-        hessian: [[Matrix3::zeros(); 3]; 3],
-    };
-    for k in 1..3 {
+    let force = |k: usize| {
         let g = shape[k];
-        out.gradient[k] = (u1 * (p11 * g.x + p12 * g.y) + u2 * (p21 * g.x + p22 * g.y)) * area;
+        (u1 * (p11 * g.x + p12 * g.y) + u2 * (p21 * g.x + p22 * g.y)) * area
+    };
+    let hessian = |k: usize, l: usize| {
+        let (g, h) = (shape[k], shape[l]);
         let (g11, g12, g21, g22) = (k11 * g, k12.transpose() * g, k12 * g, k22 * g);
         let gn = curvatures.normal * g;
-        for l in k..3 {
-            let h = shape[l];
-            let block = Matrix3::new(
-                g11.dot(&h),
-                g12.dot(&h),
-                0.0,
-                g21.dot(&h),
-                g22.dot(&h),
-                0.0,
-                0.0,
-                0.0,
-                gn.dot(&h),
-            );
-            out.hessian[k][l] = basis * (block * area) * basis.transpose();
-        }
-    }
-    // Translations store no energy: the rows of node 0 are minus the sum of the others.
-    out.gradient[0] = -(out.gradient[1] + out.gradient[2]);
-    let [_, [_, h11, h12], [.., h22]] = out.hessian;
-    let (h01, h02) = (-(h11 + h12.transpose()), -(h12 + h22));
-    out.hessian[0] = [-(h01 + h02), h01, h02];
-    out
+        let block =
+            Matrix3::new(g11.dot(&h), g12.dot(&h), 0.0, g21.dot(&h), g22.dot(&h), 0.0, 0.0, 0.0, gn.dot(&h));
+        basis * (block * area) * basis.transpose()
+    };
+    Linearization::of_translations(
+        area * energy,
+        [force(1), force(2)],
+        [hessian(1, 1), hessian(1, 2), hessian(2, 2)],
+    )
 }
 
 /// Filters the eigenvalues of a symmetric matrix.

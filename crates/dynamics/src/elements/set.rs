@@ -6,7 +6,7 @@
 //! are no locks, no atomics and no buffers, and sums always run in element order: the result has the same
 //! bits for any number of threads.
 
-use super::element::{Element, Linearization, Start};
+use super::element::{BATCH, Element, Linearization, Start};
 use super::filter::Filter;
 use crate::linear::assembly::ElementModel;
 use crate::linear::block::BlockPattern;
@@ -181,22 +181,19 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
 
     fn linearize(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64 {
         let mut energy = 0.0;
-        for four in self.chunk(chunk).chunks(4) {
+        for batch in self.chunk(chunk).chunks(BATCH) {
             // The last ones may be fewer; others fill their places.
-            let element = |k: usize| &self.elements[four[k.min(four.len() - 1)] as usize];
-            let elements: [&E; 4] = std::array::from_fn(element);
-            let x = elements.map(|element| element.nodes().map(|n| motion.x[n as usize]));
-            let frames = E::frames(elements, &x);
-            for (((&index, element), x), frame) in four.iter().zip(elements).zip(&x).zip(&frames) {
-                let x0 = element.nodes().map(|n| motion.start[n as usize]);
-                let start = Start { x: &x0, rate: motion.rate };
-                let part = element.linearize_in(frame, x, (motion.rate > 0.0).then_some(start), filter);
-                let nodes = element.nodes();
+            let elements: [&E; BATCH] =
+                std::array::from_fn(|k| &self.elements[batch[k.min(batch.len() - 1)] as usize]);
+            let [x, start] = [motion.x, motion.start]
+                .map(|of| elements.map(|element| element.nodes().map(|n| of[n as usize])));
+            E::linearize_batch(elements, &x, &start, motion.rate, filter, &mut |k, part| {
+                let (Some(&index), nodes) = (batch.get(k), elements[k].nodes()) else { return };
                 if Self::owner(&nodes) == chunk {
                     energy += part.energy;
                 }
-                add(&part, &nodes, &self.slots[index as usize], rows);
-            }
+                add(part, &nodes, &self.slots[index as usize], rows);
+            });
         }
         energy
     }

@@ -28,7 +28,9 @@
 //! angular momentum; its gradient is the viscous force of implicit Euler. The curvatures of a damped element
 //! are the sum of those of both potentials, and the sum is filtered.
 
-use super::element::{Element, Linearization, Start};
+mod lanes;
+
+use super::element::{BATCH, Element, Linearization, Start};
 use super::filter::Filter;
 use super::membrane::{
     Curvatures, Decomposition, MIN_SINGULAR_VALUE, assemble, decompose, deformation, filter_2, filter_4,
@@ -254,6 +256,22 @@ impl Element<3> for Triangle {
 
         let curvatures = Curvatures { plane, normal: local.normal };
         assemble(&self.gradients, self.area, decomposition, local.energy, local.stress, &curvatures)
+    }
+
+    fn linearize_batch(
+        elements: [&Self; BATCH],
+        x: &[[Vector; 3]; BATCH],
+        start: &[[Vector; 3]; BATCH],
+        rate: f64,
+        filter: Filter,
+        visit: &mut impl FnMut(usize, &Linearization<3>),
+    ) {
+        let holds = lanes::linearize(elements, x, start, rate, filter, visit);
+        for k in (0..BATCH).filter(|&k| !holds[k]) {
+            let [decomposition, ..] = decompose(&[elements[k].deformation(&x[k]); 4]);
+            let start = (rate > 0.0).then_some(Start { x: &start[k], rate });
+            visit(k, &elements[k].linearize_in(&decomposition, &x[k], start, filter));
+        }
     }
 
     fn gradient(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>) -> [Vector; 3] {

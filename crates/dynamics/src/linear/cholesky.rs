@@ -98,6 +98,15 @@ impl Symbolic {
         self.starts[k] as usize..self.starts[k + 1] as usize
     }
 
+    /// Number of products of blocks that a factorization subtracts below the diagonal.
+    pub fn updates(&self) -> usize {
+        let pairs = |entries: &[u32]| {
+            let below = (entries[1] - entries[0]) as usize;
+            below * below.saturating_sub(1) / 2
+        };
+        self.starts.windows(2).map(pairs).sum()
+    }
+
     /// Number of blocks of L below the diagonal.
     pub fn fill(&self) -> usize {
         self.rows.len()

@@ -4,7 +4,7 @@
 //! of P are the six rigid motions of each aggregate (a leaf of the numbering, [`super::ordering`]) about its
 //! center at the current x. The Galerkin matrix P^T H P is factorized, and `P (P^T H P)^-1 P^T` is added to
 //! the fine preconditioner. Springs join aggregates that the mesh does not join: the graph of the matrix is
-//! then built anew, unless the factor would fill in too much.
+//! then built anew, unless the factorization would take too long.
 
 use super::cholesky::{Cholesky, PivotPolicy, Symbolic};
 use super::lane::{Lane, Real};
@@ -16,10 +16,12 @@ use nalgebra::{Matrix3, Matrix6, Vector6};
 use rayon::prelude::*;
 use std::ops::{AddAssign, Range};
 
-/// Largest fill of a factor with springs, relative to that of the mesh. The graph of a pile of many layers is
-/// not that of a surface, and its factor costs more time than it saves. Beyond this only the diagonal blocks
-/// of springs are used.
-const MAX_FILL: usize = 8;
+/// Largest number of block updates by which springs may make the factorization longer, per node and expected
+/// iteration [1]. An update takes as long as an iteration of conjugate gradients takes per node, and the graph of
+/// a pile of many layers is not that of a surface. Beyond this only the diagonal blocks of springs are used.
+/// Larger: fewer iterations in piles, each system longer to prepare. Smaller: more iterations where solids rest
+/// on each other.
+const MAX_SHARE: f64 = 0.15;
 
 /// Rigid motions of aggregates.
 #[derive(Clone, Debug, Default)]
@@ -89,13 +91,15 @@ impl Coarse {
         Self { aggregates: aggregates.to_vec(), mesh, aggregate_of, ..Self::default() }
     }
 
-    /// Builds and factorizes the Galerkin matrix for `system` at positions `x`.
-    pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
+    /// Builds and factorizes the Galerkin matrix for `system` at positions `x`, for solves that are expected
+    /// to take some number of `iterations`.
+    pub fn build(&mut self, system: &System<'_>, x: &[Vector], iterations: usize) {
         self.place_arms(system, x);
+        let most = self.mesh.symbolic.updates() + (MAX_SHARE * (iterations * x.len()) as f64) as usize;
         self.joined = system
             .springs
             .map(|springs| self.join(springs, x))
-            .filter(|graph| graph.symbolic.fill() <= MAX_FILL * self.mesh.symbolic.fill().max(1));
+            .filter(|graph| graph.symbolic.updates() <= most);
         let couplings = system.springs.filter(|_| self.joined.is_some());
         let graph = self.joined.as_ref().unwrap_or(&self.mesh);
         self.blocks.resize(graph.neighbors.len(), Matrix6::zeros());

@@ -20,13 +20,14 @@ pub(crate) struct Levels {
 }
 
 impl Levels {
-    /// Prepares for `system`, linearized at positions `x`.
-    pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
+    /// Prepares for `system`, linearized at positions `x`, for solves that are expected to take some number of
+    /// `iterations`.
+    pub fn build(&mut self, system: &System<'_>, x: &[Vector], iterations: usize) {
         if let Some(direct) = &mut self.direct {
             direct.build(system);
         }
         if let Some(coarse) = &mut self.coarse {
-            coarse.build(system, x);
+            coarse.build(system, x, iterations);
         }
     }
 }

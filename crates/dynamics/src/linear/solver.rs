@@ -16,6 +16,9 @@ use super::preconditioner::Levels;
 use super::system::System;
 use bowknot_geometry::Vector;
 
+/// Iterations that the first solves of a time step are expected to take.
+const EXPECTED_ITERATIONS: usize = 100;
+
 /// A linear system H x = b.
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'a> {
@@ -38,6 +41,8 @@ pub(crate) struct LinearSolver {
     single: Krylov<f32>,
     double: Krylov<f64>,
     guesses: Guesses,
+    /// Iterations of the last inexact solve of the time step, and of the last other one.
+    expected: [usize; 2],
     /// b - H x [N].
     residual: Vec<Vector>,
     /// Squared norms of b by part.
@@ -54,6 +59,7 @@ impl LinearSolver {
     /// Forgets what depends on the time step before.
     pub fn begin_step(&mut self) {
         self.precise = self.levels.direct.is_some();
+        self.expected = [EXPECTED_ITERATIONS; 2];
     }
 
     /// Computes in double precision for the rest of the time step.
@@ -62,8 +68,8 @@ impl LinearSolver {
     }
 
     /// Builds the preconditioner for `system`, linearized at positions `x`.
-    fn prepare(&mut self, system: &System<'_>, x: &[Vector]) {
-        self.levels.build(system, x);
+    fn prepare(&mut self, system: &System<'_>, x: &[Vector], iterations: usize) {
+        self.levels.build(system, x, iterations);
         if self.precise {
             self.double.fill_preconditioner(system, &self.levels);
         } else {
@@ -73,7 +79,7 @@ impl LinearSolver {
 
     /// Sets `z` to the preconditioner of `system`, linearized at positions `x`, times `r`.
     pub fn precondition(&mut self, system: &System<'_>, x: &[Vector], r: &[Vector], z: &mut [Vector]) {
-        self.prepare(system, x);
+        self.prepare(system, x, self.expected[1]);
         let (factor, whole) = (unit_factor(r), Parts::whole(r.len()));
         if self.precise {
             self.double.begin(&mut self.levels, &whole, r, factor);
@@ -109,11 +115,12 @@ impl LinearSolver {
         limits: &Limits,
         x: &mut [Vector],
     ) -> CgInfo {
-        self.prepare(system, positions);
+        let kind = usize::from(limits.own_tolerance == 0.0);
+        self.prepare(system, positions, self.expected[kind]);
         x.fill(Vector::zeros());
         self.residual.clear();
         self.residual.extend_from_slice(b);
-        let Self { levels, precise, single, double, guesses: start, residual, scales, .. } = self;
+        let Self { levels, precise, single, double, guesses: start, residual, scales, expected, .. } = self;
 
         let mut factor = unit_factor(b);
         let norms = if *precise {
@@ -182,6 +189,7 @@ impl LinearSolver {
         }
         let shares = norms.iter().zip(&relative).filter(|(_, relative)| **relative > 0.0);
         let largest = shares.map(|(norm, relative)| norm / relative).fold(0.0, f64::max);
+        expected[kind] = limits.max_iterations - left;
         CgInfo {
             iterations: limits.max_iterations - left,
             residual: largest.sqrt(),

@@ -162,3 +162,43 @@ fn scaling_lengths_scales_energy_by_area_and_forces_by_length() {
         );
     }
 }
+
+/// Gradient, blocks of the Hessian and energy.
+fn numbers(part: &Linearization<3>) -> Vec<f64> {
+    let hessian = part.hessian.iter().enumerate().flat_map(|(a, row)| row[a..].iter().flatten());
+    part.gradient.iter().flatten().chain(hessian).chain([&part.energy]).copied().collect()
+}
+
+/// With and without damping, stretched, compressed and crushed to a line or a point: in each place of a batch the
+/// same bits, and those of one alone but for rounding.
+#[test]
+fn several_at_once_are_as_one_by_one() {
+    let mut stream = Stream::new(9);
+    for (scale, amount) in [(1.3, 0.3), (1.0, 0.01), (0.5, 0.3), (0.1, 0.05), (0.0, 0.0)] {
+        for (filter, rate) in [(Filter::Clamp, 20.0), (Filter::Absolute, 20.0), (Filter::Clamp, 0.0)] {
+            let triangles: [Triangle; BATCH] =
+                std::array::from_fn(|k| triangle(if k % 3 == 0 { 0.0 } else { 0.02 }));
+            let x0: [[Vector; 3]; BATCH] = std::array::from_fn(|_| deformed(&mut stream, 1.0, 0.2));
+            let mut x: [[Vector; 3]; BATCH] = std::array::from_fn(|_| deformed(&mut stream, scale, amount));
+            x[5] = [Vector::zeros(), Vector::x() * 0.1, Vector::x() * 0.2];
+            let in_order = |order: [usize; BATCH]| {
+                let mut found = vec![Vec::new(); BATCH];
+                let (elements, x, x0) =
+                    (order.map(|k| &triangles[k]), order.map(|k| x[k]), order.map(|k| x0[k]));
+                Triangle::linearize_batch(elements, &x, &x0, rate, filter, &mut |k, part| {
+                    found[order[k]] = numbers(part);
+                });
+                found
+            };
+            let together = in_order(std::array::from_fn(|k| k));
+            assert_eq!(together, in_order(std::array::from_fn(|k| (k + 3) % BATCH)));
+            for k in 0..BATCH {
+                let start = (rate > 0.0).then_some(Start { x: &x0[k], rate });
+                let alone = numbers(&triangles[k].linearize(&x[k], start, filter));
+                let largest = alone.iter().fold(0.0f64, |most, number| most.max(number.abs()));
+                let apart = alone.iter().zip(&together[k]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(apart <= 1e-11 * largest, "{scale} {filter:?} {k}: {apart:e} of {largest:e}");
+            }
+        }
+    }
+}

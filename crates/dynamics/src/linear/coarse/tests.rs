@@ -46,7 +46,7 @@ fn the_correction_is_the_galerkin_projection() {
         pattern.columns[pattern.row(row)].iter().for_each(|&c| visit(c));
         scalar.off_pattern(row).0.iter().for_each(|&c| visit(c));
     });
-    coarse.build(&system, &x);
+    coarse.build(&system, &x, 100);
 
     // Dense H over free nodes, dense P from the definition.
     let count = x.len();
@@ -98,7 +98,7 @@ fn aggregates_with_fewer_than_six_motions_are_solved() {
         pattern.columns[pattern.row(row)].iter().for_each(|&c| visit(c));
         scalar.off_pattern(row).0.iter().for_each(|&c| visit(c));
     });
-    coarse.build(&system, &x);
+    coarse.build(&system, &x, 100);
     let r: Vec<Vector> =
         free.iter().map(|&f| if f { Vector::new(1.0, 2.0, 3.0) } else { Vector::zeros() }).collect();
     let displacements = correct(&mut coarse, &r);
