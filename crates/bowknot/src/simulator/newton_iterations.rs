@@ -47,8 +47,6 @@ struct NewtonIterations<'a> {
     statistics: &'a mut StepStatistics,
     /// After the last iteration.
     residual: Residual,
-    /// Whether the last target was rough.
-    is_rough: bool,
     /// The body with the largest remaining distance, if the last collision problem did not converge.
     slowest_body: Option<u32>,
 }
@@ -80,11 +78,10 @@ impl Simulator {
             let residual = iterations.residual;
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
             observer.iterated(&Iterated { step, iteration, residual });
-            let is_final = !is_cut && !iterations.is_rough;
-            if tolerance.ends(residual.distance) && is_final {
+            if tolerance.ends(residual.distance) && !is_cut {
                 break;
             }
-            iterations.finish_groups(is_final);
+            iterations.finish_groups(is_cut);
         }
         iterations.end()?;
         self.positions.clone_from(&scratch.x);
@@ -114,7 +111,6 @@ impl Simulator {
             scratch,
             statistics,
             residual: Residual::default(),
-            is_rough: false,
             slowest_body: None,
         };
         (&self.velocities, iterations)
@@ -146,7 +142,6 @@ impl NewtonIterations<'_> {
         finished.lead(x, &ends.places);
         let info = self.dynamics.newton_target(x, finished.held(), finished.places(), y)?;
         self.statistics.add_newton(&info, timer.elapsed().as_secs_f64());
-        self.is_rough = info.is_rough;
         if !info.cg.converged {
             let (step, residual) = (self.step, info.cg.residual);
             tracing::debug!(step, iteration, residual, "the linear solve did not converge");
@@ -236,14 +231,14 @@ impl NewtonIterations<'_> {
         Ok(())
     }
 
-    /// Lets the groups of bodies whose time step is solved stay where they are, if the state `is_final`: neither
-    /// was the collision problem cut short nor the target rough.
-    fn finish_groups(&mut self, is_final: bool) {
+    /// Lets the groups of bodies whose time step is solved stay where they are, unless the collision problem
+    /// was cut short.
+    fn finish_groups(&mut self, is_cut: bool) {
         let Self { dynamics, contacts, world, tolerance, .. } = self;
         let Scratch { x, prescribed, ends, finished, .. } = &mut *self.scratch;
         let delta = self.resolver.scene().lengths().delta;
         // A device sets up its matrices anew where other vertices are free.
-        let may_finish = is_final && dynamics.backend().is_none();
+        let may_finish = !is_cut && dynamics.backend().is_none();
         if may_finish && ends.are_reached(world, prescribed, &x[..world.collision_vertices()], delta) {
             let (distances, springs) = (dynamics.component_distances(), contacts.springs());
             finished.update(dynamics.model(), distances, contacts.counted(), springs, *tolerance);

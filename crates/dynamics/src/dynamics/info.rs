@@ -23,9 +23,6 @@ pub struct NewtonInfo {
     pub energy_after: f64,
     /// Largest |y - x| over free vertices [m].
     pub max_displacement: f64,
-    /// Whether contact forces may be off by up to a half, so that friction is wrong unless another target follows in
-    /// the time step. False without a [tolerance of the time step](crate::Dynamics::set_step_tolerance).
-    pub is_rough: bool,
 }
 
 impl NewtonInfo {
@@ -38,7 +35,6 @@ impl NewtonInfo {
         self.step_length = next.step_length;
         self.reduction_ratio = next.reduction_ratio;
         self.energy_after = next.energy_after;
-        self.is_rough = next.is_rough;
     }
 
     /// Decrease of the potential [J].

@@ -218,8 +218,7 @@ impl Dynamics {
 
     /// Sets the [`Residual::distance`] at which a time step counts as solved [m], 0 at first: none. It takes
     /// effect at the next [`Self::begin_step`]. Linear solves that correct a step are then accurate enough
-    /// for it, however far bodies move in the step and however much they differ in mass. Targets far from it may
-    /// leave accurate contact forces to the next one, see [`NewtonInfo::is_rough`].
+    /// for it, however far bodies move in the step and however much they differ in mass.
     pub fn set_step_tolerance(&mut self, distance: f64) {
         self.step_tolerance = distance;
     }

@@ -1,6 +1,7 @@
 //! The sequence of Newton iterations with contacts, around [`super::iteration`].
 
 use super::bodies::Answer;
+use super::corrections::MIN_REDUCTION_RATIO;
 use super::iteration::Accuracy;
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
@@ -10,14 +11,13 @@ use crate::dynamics::info::NewtonInfo;
 /// iterations.
 const FORCE_TOLERANCE: f64 = 0.002;
 
-/// Share of the contact forces by which it may have been off in a target that another one follows, where iterations
-/// gain little. Larger: fewer iterations in a target, more targets. Smaller: targets that the collision stage
-/// changes in any case are solved too well.
-const ROUGH_FORCE_TOLERANCE: f64 = 0.5;
+/// Number of Newton iterations after the first for which [`FORCE_TOLERANCE`] applies. More: piles of cloth,
+/// where thousands of contacts open and close, cost more. Fewer: their contact forces are less accurate.
+const STRICT_ITERATIONS: usize = 10;
 
-/// Factor on that share by which an iteration gains little: thousands of contacts open and close then. Larger:
-/// more iterations in piles of cloth. Smaller: rough targets are rougher.
-const GAIN: f64 = 0.1;
+/// Share of the contact forces by which a later step may have been off. Larger: the method gives up earlier.
+/// Smaller: it makes all of [`MAX_ITERATIONS`] more often.
+const LOOSE_FORCE_TOLERANCE: f64 = 0.3;
 
 /// Largest number of Newton iterations after the first. More: targets with many contacts cost more. Fewer:
 /// what is wrong is found after the collision stage, in the next target.
@@ -29,38 +29,26 @@ const MIN_STEP_LENGTH: f64 = 0.9;
 
 impl Newton<'_> {
     /// Computes the target with springs: makes Newton iterations until the forces that the linear system gave
-    /// to the contacts are those that the contacts have, or nearly so and iterations gain little, then
-    /// corrections. The last system is solved accurately unless another target is likely to follow.
+    /// to the contacts are those that the contacts have, then corrections.
     pub(super) fn solve_with_contacts(&mut self) -> Answer<NewtonInfo> {
         let accuracy = if self.is_first { Accuracy::Full } else { Accuracy::Inexact };
         let first = self.iterate(accuracy)?;
-        let (mut info, mut last, mut last_wrong) = (first, first, f64::INFINITY);
-        let mut is_rough = false;
-        for _ in 0..MAX_ITERATIONS {
+        let (mut info, mut last) = (first, first);
+        for iteration in 0..MAX_ITERATIONS {
+            let tolerated =
+                if iteration < STRICT_ITERATIONS { FORCE_TOLERANCE } else { LOOSE_FORCE_TOLERANCE };
             let wrong = self.repulsion.update(&self.bodies.trial());
-            let is_full_step = last.step_length > MIN_STEP_LENGTH;
-            if wrong <= FORCE_TOLERANCE && is_full_step {
+            if wrong <= tolerated && last.step_length > MIN_STEP_LENGTH {
                 break;
             }
-            is_rough = self.course.is_far()
-                && is_full_step
-                && wrong <= ROUGH_FORCE_TOLERANCE
-                && wrong > GAIN * last_wrong;
-            if is_rough {
-                break;
-            }
-            last_wrong = wrong;
             self.bodies.start_from_trial()?;
             last = self.iterate(Accuracy::Inexact)?;
             info.add(&last);
         }
-        if self.model.has_strands() || !self.is_accurate(&last) {
+        if self.model.has_strands() || last.reduction_ratio < MIN_REDUCTION_RATIO {
             self.correct(first.decrease(), &mut info)?;
         }
-        if !self.course.is_far() {
-            self.refine(&mut info)?;
-        }
-        info.is_rough = is_rough;
+        self.refine(&mut info)?;
         Ok(info)
     }
 }

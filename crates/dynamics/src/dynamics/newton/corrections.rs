@@ -8,7 +8,7 @@ use crate::dynamics::info::NewtonInfo;
 /// Reduction ratio at which a Newton step counts as accurate: the actual decrease of the potential over the
 /// predicted one. At this ratio the error of the quadratic model is about a tenth of the decrease, and after
 /// another iteration about the square of that.
-const MIN_REDUCTION_RATIO: f64 = 0.9;
+pub(super) const MIN_REDUCTION_RATIO: f64 = 0.9;
 
 /// Decrease of a correction below which no other one is made, as a share of the potential.
 const MIN_RELATIVE_DECREASE: f64 = 1e-6;
@@ -61,25 +61,13 @@ impl Newton<'_> {
             let moved = self.bodies.distance_from_start();
             let small = next.max_displacement <= MAX_LAST_DISPLACEMENT * moved;
             gained += next.decrease();
-            let tolerated = !strands && missed(&next) <= MAX_MODEL_ERROR * gained;
-            let accurate = self.is_accurate(&next) || tolerated;
+            let missed = (1.0 - next.reduction_ratio) * next.decrease();
+            let accurate =
+                next.reduction_ratio >= MIN_REDUCTION_RATIO || !strands && missed <= MAX_MODEL_ERROR * gained;
             let stalled = next.decrease() <= MIN_RELATIVE_DECREASE * next.energy_before.abs();
             finished = small && accurate || stalled;
         }
         Ok(())
-    }
-
-    /// Whether the quadratic model of an iteration was accurate or, after the first target of a time step, off by
-    /// a decrease that does not count: that of a residual at half of the tolerance of the time step. With forces b
-    /// out of balance and the preconditioner M^-1 the model promises b.M^-1 b / 2, and the residual is dt times
-    /// the root of b.M^-1 b over the mass.
-    pub(super) fn is_accurate(&self, info: &NewtonInfo) -> bool {
-        let masses =
-            self.model.components.iter().map(|nodes| self.model.component_masses[nodes.start as usize]);
-        let lightest = masses.fold(f64::INFINITY, f64::min);
-        let speed = 0.5 * self.course.step_tolerance / self.dt;
-        let counts = self.is_first || missed(info) > 0.5 * lightest * speed * speed;
-        info.reduction_ratio >= MIN_REDUCTION_RATIO || !counts
     }
 
     /// Makes one more iteration with an accurate solve if the last solve was inexact.
@@ -91,9 +79,4 @@ impl Newton<'_> {
         }
         Ok(())
     }
-}
-
-/// Decrease of the potential by which an iteration missed what its quadratic model promised [J].
-fn missed(info: &NewtonInfo) -> f64 {
-    (1.0 - info.reduction_ratio) * info.decrease()
 }

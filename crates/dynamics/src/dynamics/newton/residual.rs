@@ -28,7 +28,6 @@ impl Newton<'_> {
             }
             distances.push(own);
         }
-        self.course.residuals = [distance, self.course.residuals[0]];
         let force = imbalance.squared_force.sqrt();
         Ok((Residual { force, distance, vertex }, distances))
     }

@@ -1,11 +1,11 @@
 //! The sequence of Newton iterations from a state to the target.
 //!
-//! In each target the last linear system is solved accurately, unless contacts make another target likely, and
-//! so is the first one of a time step and of a target without contacts. The solves between are inexact, as
-//! another linearization follows: an inexact
+//! In each target the last linear system is solved accurately, and so is the first one of a time step and of
+//! a target without contacts. The solves between are inexact, as another linearization follows: an inexact
 //! Newton method (Dembo, Eisenstat and Steihaug 1982).
 
 use super::bodies::Answer;
+use super::corrections::MIN_REDUCTION_RATIO;
 use super::iteration::Accuracy;
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
@@ -19,7 +19,7 @@ impl Newton<'_> {
     /// Makes a Newton iteration and, if it was inaccurate or there are strands, corrections.
     fn solve_without_contacts(&mut self) -> Answer<NewtonInfo> {
         let mut info = self.iterate(Accuracy::Full)?;
-        if self.model.has_strands() || !self.is_accurate(&info) {
+        if info.reduction_ratio < MIN_REDUCTION_RATIO || self.model.has_strands() {
             self.correct(info.decrease(), &mut info)?;
             self.refine(&mut info)?;
         }

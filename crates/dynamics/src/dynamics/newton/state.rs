@@ -43,10 +43,6 @@ pub struct DeviceStep {
     pub potential_at_start: f64,
 }
 
-/// Residual, in tolerances of the time step, that one target is not expected to bring below the tolerance. Larger:
-/// more systems are solved more accurately than their target is followed. Smaller: more targets.
-const FAR: f64 = 10.0;
-
 /// What the iterations of a time step have found out.
 #[derive(Debug, Default)]
 pub struct Course {
@@ -58,23 +54,10 @@ pub struct Course {
     pub scales: Vec<f64>,
     /// See [`crate::Dynamics::set_step_tolerance`] [m].
     pub step_tolerance: f64,
-    /// The last residual of the time step and the one before [m]; 0 before there is one.
-    pub residuals: [f64; 2],
     /// Whether the CPU does the rest of the time step.
     pub leaves_device: bool,
     /// The time step on the device, once it has begun there.
     pub on_device: Option<DeviceStep>,
-}
-
-impl Course {
-    /// Whether the time step is so far from its solution that another target is likely to follow the next one, and
-    /// comes nearer: where it does not, targets must be more accurate.
-    pub fn is_far(&self) -> bool {
-        let [last, before] = self.residuals;
-        self.step_tolerance > 0.0
-            && last > FAR * self.step_tolerance
-            && (before == 0.0 || last < 0.5 * before)
-    }
 }
 
 /// Buffers; they may be dropped at any time.
