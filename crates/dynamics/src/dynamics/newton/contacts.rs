@@ -29,26 +29,36 @@ const MIN_STEP_LENGTH: f64 = 0.9;
 
 impl Newton<'_> {
     /// Computes the target with springs: makes Newton iterations until the forces that the linear system gave
-    /// to the contacts are those that the contacts have, then corrections.
+    /// to the contacts are those that the contacts have, then corrections. Only then the last system is solved
+    /// accurately: while contacts still open and close, what it finds does not last.
     pub(super) fn solve_with_contacts(&mut self) -> Answer<NewtonInfo> {
         let accuracy = if self.is_first { Accuracy::Full } else { Accuracy::Inexact };
         let first = self.iterate(accuracy)?;
         let (mut info, mut last) = (first, first);
+        let is_settled = self.settle_contacts(&mut info, &mut last)?;
+        if self.model.has_strands() || last.reduction_ratio < MIN_REDUCTION_RATIO {
+            self.correct(first.decrease(), &mut info)?;
+        }
+        if is_settled {
+            self.refine(&mut info)?;
+        }
+        Ok(info)
+    }
+
+    /// Makes Newton iterations after the `last` one until the contacts have the forces that the linear system gave
+    /// them. Returns whether they do in the end; `info` describes all iterations.
+    fn settle_contacts(&mut self, info: &mut NewtonInfo, last: &mut NewtonInfo) -> Answer<bool> {
         for iteration in 0..MAX_ITERATIONS {
             let tolerated =
                 if iteration < STRICT_ITERATIONS { FORCE_TOLERANCE } else { LOOSE_FORCE_TOLERANCE };
             let wrong = self.repulsion.update(&self.bodies.trial());
             if wrong <= tolerated && last.step_length > MIN_STEP_LENGTH {
-                break;
+                return Ok(true);
             }
             self.bodies.start_from_trial()?;
-            last = self.iterate(Accuracy::Inexact)?;
-            info.add(&last);
+            *last = self.iterate(Accuracy::Inexact)?;
+            info.add(last);
         }
-        if self.model.has_strands() || last.reduction_ratio < MIN_REDUCTION_RATIO {
-            self.correct(first.decrease(), &mut info)?;
-        }
-        self.refine(&mut info)?;
-        Ok(info)
+        Ok(false)
     }
 }
