@@ -9,6 +9,7 @@
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
 //! | `soak` | draws collision problems for minutes or hours, and judges every accepted step |
 //! | `twins` | writes the CPU twins of the kernels from their shaders |
+//! | `wheel` | builds the Python package as a release uploads it |
 //! | `mutations` | makes mistakes in a copy of the code, and requires that the safety tests catch each |
 //!
 //! `cargo xtask help` prints the options.
@@ -27,6 +28,8 @@ mod pictures;
 mod readers;
 mod soak;
 mod twins;
+mod venv;
+mod wheel;
 mod workspace;
 
 use std::process::ExitCode;
@@ -44,10 +47,11 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
 [--generated]
        cargo xtask mutations [NAME..]
        cargo xtask twins
+       cargo xtask wheel
 
 check     run what CI runs, in named steps: format, \
-clippy, docs, wasm, a small run, its exports read back, tests; the fuzz targets if there
-          is a \
+clippy, docs, wasm, a small run, its exports read back, the Python
+          package, tests; the fuzz targets if there is a \
 nightly compiler, `cargo deny` if it is installed
           --fast        format, clippy and unit tests \
 only
@@ -88,7 +92,8 @@ the workspace, and
           require that the safety tests catch each; some minutes per mutation
 twins     write crates/gpu/src/kernels, what \
 the CPU runs in place of each kernel, from crates/gpu/shader: after every change of a
-          shader";
+          shader
+wheel     build the Python package as a release uploads it, in target/wheels; needs Python with venv";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -121,6 +126,7 @@ fn main() -> ExitCode {
             mutations::run(&workspace::root(), names)
         }
         ["twins"] => twins::run(&workspace::root()),
+        ["wheel"] => wheel::run(&workspace::root()),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS

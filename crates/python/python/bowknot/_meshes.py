@@ -1,0 +1,182 @@
+"""Meshes: those of this package, and those of others, which are told by their attributes.
+
+Nothing is imported from meshio, trimesh and pyvista: an object that looks like a mesh of theirs is one.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays, _native
+from ._call import call
+from ._errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A mesh by its arrays.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, shape (n, 3)
+        Positions [m].
+    faces : ndarray of uint32, shape (m, 3)
+        Vertices of the triangles.
+    tets : ndarray of uint32, shape (t, 4)
+        Vertices of the tetrahedra.
+    edges : ndarray of uint32, shape (k, 2)
+        Vertices of the edges of strands.
+    particles : ndarray of uint32, shape (p,)
+        Vertices that are particles.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.uint32]
+    tets: NDArray[np.uint32]
+    edges: NDArray[np.uint32]
+    particles: NDArray[np.uint32]
+
+    def __repr__(self) -> str:
+        counts = [
+            (len(self.vertices), "vertices"),
+            (len(self.faces), "faces"),
+            (len(self.tets), "tets"),
+            (len(self.edges), "edges"),
+            (len(self.particles), "particles"),
+        ]
+        return f"Mesh({', '.join(f'{count} {what}' for count, what in counts if count)})"
+
+
+def is_path(value: object) -> bool:
+    """Whether a value names a file."""
+    return isinstance(value, (str, os.PathLike))
+
+
+def mesh_of(
+    mesh: Any,
+    faces: ArrayLike | None = None,
+    *,
+    tets: ArrayLike | None = None,
+    edges: ArrayLike | None = None,
+    particles: ArrayLike | None = None,
+    name: str = "vertices",
+) -> Mesh:
+    """The mesh of an object, of a file, or of arrays.
+
+    Parameters
+    ----------
+    mesh : Mesh, meshio.Mesh, trimesh.Trimesh, pyvista.PolyData, path, or array_like of shape (n, 3)
+        A mesh, the path of a mesh file, or vertices [m].
+    faces, tets, edges, particles : array_like of integers, optional
+        Elements of vertices that are given as an array.
+    name : str
+        What the vertices are called in messages.
+
+    Raises
+    ------
+    InputError
+        Anything else, or elements of an object that has its own.
+    """
+    given = [faces, tets, edges, particles]
+    parts = None if isinstance(mesh, np.ndarray) else _parts(mesh)
+    if parts is None:
+        vertices = _arrays.points(name, mesh)
+        return _checked(vertices, faces, tets, edges, particles)
+    if any(elements is not None for elements in given):
+        raise InputError(f"{type(mesh).__name__}: the mesh has elements of its own; give either these or arrays")
+    if isinstance(parts, Mesh):
+        return parts
+    vertices, faces, tets, edges, particles = parts
+    return _checked(_arrays.points(name, vertices), faces, tets, edges, particles)
+
+
+def _checked(vertices: Any, faces: Any, tets: Any, edges: Any, particles: Any) -> Mesh:
+    count = len(vertices)
+    return Mesh(
+        vertices,
+        _arrays.elements("faces", faces, 3, count),
+        _arrays.elements("tets", tets, 4, count),
+        _arrays.elements("edges", edges, 2, count),
+        _arrays.elements("particles", particles, None, count),
+    )
+
+
+def _parts(mesh: Any) -> Any:
+    """Vertices, faces, tetrahedra, edges and particles of a mesh; None for what is none."""
+    if isinstance(mesh, Mesh):
+        return mesh
+    if is_path(mesh):
+        return read_mesh(mesh)
+    # meshio: cells by type.
+    if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
+        cells = mesh.cells_dict
+        if not hasattr(mesh, "regular_faces"):
+            known = {"triangle", "quad", "tetra", "line", "vertex"}
+            others = sorted(set(cells) - known)
+            if others:
+                raise InputError(
+                    f"{type(mesh).__name__}: cells of type {', '.join(map(str, others))} cannot be used; "
+                    "triangle, quad, tetra, line and vertex can"
+                )
+            triangles = cells.get("triangle")
+            if "quad" in cells:
+                quads = np.asarray(cells["quad"])
+                halves = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+                triangles = halves if triangles is None else np.concatenate([triangles, halves])
+            loose = cells.get("vertex")
+            loose = None if loose is None else np.asarray(loose).reshape(-1)
+            return _three(mesh.points), triangles, cells.get("tetra"), cells.get("line"), loose
+    # pyvista: a surface of triangles.
+    if hasattr(mesh, "points") and hasattr(mesh, "regular_faces"):
+        try:
+            faces = np.asarray(mesh.regular_faces)
+        except Exception as error:  # pyvista raises ValueError for faces of several sizes
+            raise InputError(f"{type(mesh).__name__}: {error}; `triangulate()` makes triangles of all") from error
+        if faces.ndim != 2 or faces.shape[1] != 3:
+            raise InputError(
+                f"{type(mesh).__name__}: expected triangles, got faces of shape {faces.shape}; "
+                "`triangulate()` makes triangles of all"
+            )
+        return mesh.points, faces, None, None, None
+    # trimesh, and whatever is like it.
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return mesh.vertices, mesh.faces, None, None, None
+    return None
+
+
+def _three(points: Any) -> Any:
+    """Points of a plane as points of space."""
+    points = np.asarray(points)
+    if points.ndim == 2 and points.shape[1] == 2:
+        return np.column_stack([points, np.zeros(len(points))])
+    return points
+
+
+def read_mesh(path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0) -> Mesh:
+    """Reads a mesh file: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (``.t``), strand segments (``.seg``).
+
+    Parameters
+    ----------
+    path : path
+        The file; the ending of its name tells the format.
+    up : {"z", "y", "x"}
+        The axis of the file that points up; in Bowknot, z does.
+    scale : float
+        Length of the file's unit [m]: 0.01 for centimeters.
+
+    Returns
+    -------
+    Mesh
+        Polygons as triangles; vertices keep their numbers.
+
+    Raises
+    ------
+    InputError
+        A missing or malformed file, with the place.
+    """
+    return Mesh(**call(_native.read_mesh, path, up, float(scale)))

@@ -1,0 +1,152 @@
+"""Whole runs into a folder, as the command makes them."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from . import _native
+from ._call import call, logger
+from ._errors import InputError
+from ._meshes import Mesh, read_mesh
+from ._scene import Scene
+
+#: Largest page in a notebook [bytes].
+_NOTEBOOK_BYTES = 5_000_000
+
+
+class Run:
+    """The folder of a run: frames, statistics, a checkpoint.
+
+    Parameters
+    ----------
+    folder : path
+        The folder.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        self.folder = Path(folder)
+        if not (self.folder / "scene.toml").is_file():
+            raise InputError(f"{self.folder}: not the folder of a run: it holds no scene.toml")
+        #: The first intersections that a check found, in words.
+        self.findings: list[str] = []
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """The content of ``summary.json``."""
+        return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
+
+    @property
+    def stats(self) -> list[dict[str, Any]]:
+        """One entry per time step, the lines of ``stats.jsonl``."""
+        text = (self.folder / "stats.jsonl").read_text(encoding="utf-8")
+        return [json.loads(line) for line in text.splitlines()]
+
+    @property
+    def scene(self) -> Scene:
+        """Its scene."""
+        return Scene.from_toml(self.folder / "scene.toml")
+
+    def mesh(self, frame: int) -> Mesh:
+        """A frame from ``frames/*.ply``; half-spaces are squares behind the other vertices."""
+        return read_mesh(self.folder / "frames" / f"{int(frame):06}.ply")
+
+    def report(self, out: str | os.PathLike[str] | None = None, **options: Any) -> Path:
+        """Writes its page; see `bowknot.report`."""
+        return report(self.folder, out, **options)
+
+    def __repr__(self) -> str:
+        return f"Run({str(self.folder)!r})"
+
+    def _repr_html_(self) -> str:
+        with tempfile.TemporaryDirectory() as folder:
+            page = report(self.folder, Path(folder) / "report.html", max_bytes=_NOTEBOOK_BYTES)
+            content = html.escape(page.read_text(encoding="utf-8"))
+        return f'<iframe srcdoc="{content}" width="100%" height="640" style="border: 0"></iframe>'
+
+
+def run(
+    scene: Scene,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    resume: bool = False,
+    check: bool = False,
+) -> Run:
+    """Runs a scene to its last frame and writes the folder that the command writes.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is simulated.
+    out : path, optional
+        The folder; default ``out`` and the name of the scene.
+    resume : bool
+        Whether the run that the folder holds is continued.
+    check : bool
+        Whether every accepted state and path is judged.
+
+    Returns
+    -------
+    Run
+        The folder, with its summary.
+
+    Raises
+    ------
+    InputError
+        What the scene or the folder is refused for; a folder that holds a run already.
+    KeyboardInterrupt
+        Ctrl-C. The folder then has a checkpoint, from which ``resume=True`` goes on.
+    """
+    if not isinstance(scene, Scene):
+        raise InputError(f"scene: expected a Scene, got {type(scene).__name__}")
+    folder = Path("out") / scene.name if out is None else Path(out)
+    _, findings, warnings = call(_native.run, scene._native, folder, bool(resume), bool(check))
+    for warning in warnings:
+        logger.warning("%s", warning)
+    done = Run(folder)
+    done.findings = findings
+    return done
+
+
+def report(
+    folder: str | os.PathLike[str] | Run,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    stride: int | None = None,
+    max_bytes: int | None = None,
+) -> Path:
+    """Writes a run as one HTML page, which plays its frames beside plots of its statistics.
+
+    Parameters
+    ----------
+    folder : path or Run
+        The folder of the run.
+    out : path, optional
+        The page; default ``report.html`` in the folder.
+    stride : int, optional
+        Every how many frames one is shown. Default: as few are left out as `max_bytes` demands.
+    max_bytes : int, optional
+        Largest size of the page [bytes]. Default 30 MB.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    InputError
+        A folder without frames, a budget too small, an output that cannot be written.
+    """
+    folder = folder.folder if isinstance(folder, Run) else Path(folder)
+    for name, value in (("stride", stride), ("max_bytes", max_bytes)):
+        if value is not None and not 0 <= int(value) < 2**63:
+            raise InputError(f"{name} {value}: it must be a whole number from 0 up")
+    page, left_out = call(_native.report, folder, folder / "report.html" if out is None else out, stride, max_bytes)
+    for what in left_out:
+        logger.warning("left out: %s", what)
+    return Path(page)
