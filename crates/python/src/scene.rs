@@ -185,8 +185,8 @@ fn extend(
         meshes.push((list, first + index, mesh));
     }
     // A scene that is still being put together may have no body yet.
-    let has_body = root.get("body").and_then(Value::as_array).is_some_and(|bodies| !bodies.is_empty());
-    let lacks_body = !has_body && !root.contains_key("pin");
+    let holds = |key: &str| root.get(key).and_then(Value::as_array).is_some_and(|list| !list.is_empty());
+    let lacks_body = !holds("body") && !holds("pin");
     if lacks_body {
         let body = Table::from_iter([("shape".to_owned(), Value::from("sheet"))]);
         root.insert("body".to_owned(), Value::Array(vec![Value::Table(body)]));

@@ -7,6 +7,8 @@ from conftest import two_sheets
 import bowknot
 from bowknot import ArrayTypeError, InputError, Resolver
 
+pytestmark = pytest.mark.filterwarnings("ignore:the matrix subclass")
+
 
 @pytest.fixture(scope="module")
 def problem():

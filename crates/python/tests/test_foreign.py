@@ -64,6 +64,10 @@ def test_cells_of_meshio():
     assert len(bowknot.repair(tets)[0].tets) == 1
     scene = Scene(bodies=[{"mesh": Meshio(np.eye(4, 3), tetra=np.array([[3, 0, 1, 2]])), "name": "tet"}])
     assert Simulator(scene).positions.shape == (4, 3)
+    # Grids of pyvista number the types of cells as VTK does.
+    grid = Meshio(np.eye(4, 3), **{})
+    grid.cells_dict = {10: np.array([[0, 1, 2, 3]])}
+    assert len(bowknot.repair(grid)[0].tets) == 1
     with pytest.raises(InputError, match="hexahedron cannot be used"):
         bowknot.check(Meshio(np.zeros((8, 3)), hexahedron=np.arange(8)[None]))
 

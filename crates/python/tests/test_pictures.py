@@ -36,7 +36,8 @@ def test_a_mesh_is_drawn():
     top = bowknot.render(vertices, faces, size=(64, 48), view="top", quality="fast")
     side = bowknot.render(vertices, faces, size=(64, 48), eye=[3, 3, 3], target=[0, 0, 0], quality="fast")
     assert (top != side).any()
-    strand = bowknot.Mesh(vertices, faces[:0], faces[:0], np.array([[0, 1]], np.uint32), np.array([7], np.uint32))
+    none = np.zeros((0, 4), np.uint32)
+    strand = bowknot.Mesh(vertices, none[:, :3], none, np.array([[0, 1]], np.uint32), np.array([7], np.uint32))
     assert bowknot.render(strand, size=(64, 48), quality="fast").std() > 0.0
 
 

@@ -51,7 +51,9 @@ def numbers(name: str, value: ArrayLike, columns: int | None, rows: int | None =
     fits = array.ndim == dimensions and (columns is None or array.shape[1] == columns)
     if not fits or (rows is not None and array.shape[0] != rows):
         raise InputError(f"{name}: expected {expected}, got {_shape(array)}")
-    if array.dtype.kind not in _NUMBERS and array.size > 0:
+    if array.size == 0:
+        return np.zeros(array.shape)
+    if array.dtype.kind not in _NUMBERS:
         raise ArrayTypeError(f"{name}: expected {expected}, got {_shape(array)}")
     if array.dtype.kind == "f" and array.dtype.itemsize > 8:
         raise ArrayTypeError(f"{name}: expected {expected}, got {_shape(array)}, which would be rounded")
@@ -75,16 +77,15 @@ def elements(name: str, value: ArrayLike | None, columns: int | None, vertices: 
     dimensions = 1 if columns is None else 2
     if array.ndim != dimensions or (columns is not None and array.shape[1] != columns):
         raise InputError(f"{name}: expected {expected}, got {_shape(array)}")
-    if array.dtype.kind not in "iu" and array.size > 0:
+    if array.size == 0:
+        return np.zeros(array.shape, np.uint32)
+    if array.dtype.kind not in "iu":
         raise ArrayTypeError(f"{name}: expected {expected}, got {_shape(array)}")
-    if array.size > 0:
-        outside = (array < 0) | (array >= vertices)
-        if outside.any():
-            row = int(np.argwhere(outside)[0][0])
-            given = array[row] if columns is None else array[row].tolist()
-            raise InputError(
-                f"{name}: row {row} is {given}, but there are {vertices} vertices, counted from 0"
-            )
+    outside = (array < 0) | (array >= vertices)
+    if outside.any():
+        row = int(np.argwhere(outside)[0][0])
+        given = array[row] if columns is None else array[row].tolist()
+        raise InputError(f"{name}: row {row} is {given}, but there are {vertices} vertices, counted from 0")
     return _contiguous(array.astype(np.uint32, copy=False), np.uint32)
 
 
@@ -100,25 +101,29 @@ def flags(name: str, value: ArrayLike | None, vertices: int) -> NDArray[np.bool_
             raise InputError(f"{name}: expected {expected}, got {_shape(array)}")
         return _contiguous(array, np.bool_)
     if array.ndim != 1 or (array.dtype.kind not in "iu" and array.size > 0):
-        raise (InputError if array.ndim != 1 else ArrayTypeError)(
-            f"{name}: expected {expected}, got {_shape(array)}"
-        )
+        raise (InputError if array.ndim != 1 else ArrayTypeError)(f"{name}: expected {expected}, got {_shape(array)}")
     marked[elements(name, array, None, vertices)] = True
     return marked
 
 
-def whole(name: str, value: ArrayLike, rows: int, largest: int) -> NDArray[np.uint32]:
-    """One whole number per vertex, from 0 to ``largest``."""
+def whole(name: str, value: ArrayLike, rows: int, largest: int, none: int | None = None) -> NDArray[np.uint32]:
+    """One whole number per vertex, from 0 to ``largest``; the largest of 32 bits for ``none``."""
     expected = f"an array of shape ({rows},) of integers from 0 to {largest}"
+    if none is not None:
+        expected += f", or {none} for none"
     array = _array(name, value, expected)
     if array.shape != (rows,):
         raise InputError(f"{name}: expected {expected}, got {_shape(array)}")
     if array.dtype.kind not in "iu" and array.size > 0:
         raise ArrayTypeError(f"{name}: expected {expected}, got {_shape(array)}")
-    if array.size > 0 and (array.min() < 0 or array.max() > largest):
-        vertex = int(np.argwhere((array < 0) | (array > largest))[0][0])
+    is_none = np.zeros(array.shape, np.bool_) if none is None else array == none
+    outside = ((array < 0) | (array > largest)) & ~is_none
+    if outside.any():
+        vertex = int(np.flatnonzero(outside)[0])
         raise InputError(f"{name}: entry {vertex} is {array[vertex]}; expected {expected}")
-    return _contiguous(array.astype(np.uint32, copy=False), np.uint32)
+    numbers_of_all = array.astype(np.uint32)
+    numbers_of_all[is_none] = 2**32 - 1
+    return numbers_of_all
 
 
 def column(name: str, value: ArrayLike | None, rows: int) -> NDArray[np.float64]:
@@ -131,6 +136,11 @@ def column(name: str, value: ArrayLike | None, rows: int) -> NDArray[np.float64]
             raise ArrayTypeError(f"{name}: expected a number, got {array.dtype}")
         return np.full(rows, float(array))
     return numbers(name, array, None, rows)
+
+
+def is_list(name: str, value: ArrayLike) -> bool:
+    """Whether a value has dimensions."""
+    return _array(name, value, "a number, or an array").ndim > 0
 
 
 def vector(name: str, value: ArrayLike) -> list[float]:

@@ -16,6 +16,9 @@ from . import _arrays, _native
 from ._call import call
 from ._errors import InputError
 
+#: Cells that can be used, by their numbers in VTK.
+_VTK_CELLS = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 10: "tetra"}
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -112,27 +115,8 @@ def _parts(mesh: Any) -> Any:
         return mesh
     if is_path(mesh):
         return read_mesh(mesh)
-    # meshio: cells by type.
-    if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
-        cells = mesh.cells_dict
-        if not hasattr(mesh, "regular_faces"):
-            known = {"triangle", "quad", "tetra", "line", "vertex"}
-            others = sorted(set(cells) - known)
-            if others:
-                raise InputError(
-                    f"{type(mesh).__name__}: cells of type {', '.join(map(str, others))} cannot be used; "
-                    "triangle, quad, tetra, line and vertex can"
-                )
-            triangles = cells.get("triangle")
-            if "quad" in cells:
-                quads = np.asarray(cells["quad"])
-                halves = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-                triangles = halves if triangles is None else np.concatenate([triangles, halves])
-            loose = cells.get("vertex")
-            loose = None if loose is None else np.asarray(loose).reshape(-1)
-            return _three(mesh.points), triangles, cells.get("tetra"), cells.get("line"), loose
     # pyvista: a surface of triangles.
-    if hasattr(mesh, "points") and hasattr(mesh, "regular_faces"):
+    if _has(mesh, "points") and _has(mesh, "regular_faces"):
         try:
             faces = np.asarray(mesh.regular_faces)
         except Exception as error:  # pyvista raises ValueError for faces of several sizes
@@ -143,10 +127,35 @@ def _parts(mesh: Any) -> Any:
                 "`triangulate()` makes triangles of all"
             )
         return mesh.points, faces, None, None, None
+    # meshio, and grids of pyvista: cells by type.
+    if _has(mesh, "points") and _has(mesh, "cells_dict"):
+        cells = {_VTK_CELLS.get(kind, kind): rows for kind, rows in mesh.cells_dict.items()}
+        others = [str(kind) for kind in cells if kind not in _VTK_CELLS.values()]
+        if others:
+            raise InputError(
+                f"{type(mesh).__name__}: cells of type {', '.join(others)} cannot be used; "
+                f"{', '.join(_VTK_CELLS.values())} can"
+            )
+        triangles = cells.get("triangle")
+        if "quad" in cells:
+            quads = np.asarray(cells["quad"])
+            halves = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+            triangles = halves if triangles is None else np.concatenate([triangles, halves])
+        loose = cells.get("vertex")
+        loose = None if loose is None else np.asarray(loose).reshape(-1)
+        return _three(mesh.points), triangles, cells.get("tetra"), cells.get("line"), loose
     # trimesh, and whatever is like it.
-    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+    if _has(mesh, "vertices") and _has(mesh, "faces"):
         return mesh.vertices, mesh.faces, None, None, None
     return None
+
+
+def _has(mesh: Any, name: str) -> bool:
+    """Whether an object has an attribute, which may still refuse to tell its value."""
+    try:
+        return hasattr(mesh, name)
+    except Exception:
+        return True
 
 
 def _three(points: Any) -> Any:

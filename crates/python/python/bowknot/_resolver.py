@@ -25,9 +25,7 @@ _TABLES = {
         "coarse_correction active_rows"
     ),
     "solver.forward": "bound damping trust_region trust_region_min trust_region_max swept_travel",
-    "solver.stop": (
-        "max_steps max_seconds rule distance stretch_tolerance remaining_fraction net_residual residual"
-    ),
+    "solver.stop": ("max_steps max_seconds rule distance stretch_tolerance remaining_fraction net_residual residual"),
 }
 _KEYS = {name: f"{table}.{name}" for table, names in _TABLES.items() for name in names.split()}
 
@@ -55,8 +53,9 @@ def _nested(path: str, table: Mapping[str, Any]) -> list[str]:
     return sets
 
 
-def _is_list(value: Any) -> bool:
-    return value is not None and np.ndim(value) > 0
+def _is_list(name: str, value: Any) -> bool:
+    """Whether a setting is given for each body rather than for all."""
+    return value is not None and _arrays.is_list(name, value)
 
 
 class Resolver:
@@ -154,6 +153,14 @@ class Resolver:
         obstacle = _arrays.flags("obstacles", obstacles, count)
         if bodies is None:
             body = obstacle.astype(np.uint32)
+            for name, rows in (("face", mesh.faces), ("edge", mesh.edges)):
+                marked = obstacle[rows]
+                mixed = np.flatnonzero(marked.any(axis=1) & ~marked.all(axis=1))
+                if len(mixed) > 0:
+                    raise InputError(
+                        f"obstacles: {name} {mixed[0]} has vertices that are marked and others that are not; mark all "
+                        "vertices of an obstacle"
+                    )
         else:
             # None has more bodies than vertices, but the one of obstacles is 1 by default.
             body = _arrays.whole("bodies", bodies, count, max(count, 2) - 1)
@@ -162,15 +169,19 @@ class Resolver:
 
         # One number is the setting of all, one number per body is each body's own.
         for name, given in (("delta", delta), ("stretch_limit", stretch_limit)):
-            if given is not None and not _is_list(given):
+            if given is not None and not _is_list(name, given):
                 params[name] = float(_arrays.column(name, given, 1)[0])
         own = [
             _arrays.column("thickness", thickness, body_count),
-            _arrays.column("delta", delta if _is_list(delta) else None, body_count),
+            _arrays.column("delta", delta if _is_list("delta", delta) else None, body_count),
             _arrays.column("friction", friction, body_count),
-            _arrays.column("stretch_limit", stretch_limit if _is_list(stretch_limit) else None, body_count),
+            _arrays.column(
+                "stretch_limit",
+                stretch_limit if _is_list("stretch_limit", stretch_limit) else None,
+                body_count,
+            ),
         ]
-        if plane_friction is None and not _is_list(friction):
+        if plane_friction is None and not _is_list("friction", friction):
             plane_friction = friction
         own_of_planes = [
             _arrays.column("plane_thickness", plane_thickness, len(planes)),
@@ -199,10 +210,7 @@ class Resolver:
     def _groups(self, groups: ArrayLike | None) -> NDArray[np.uint32]:
         if groups is None:
             return np.zeros(0, np.uint32)
-        given = np.asarray(groups)
-        if given.dtype.kind == "i":
-            given = np.where(given == -1, 2**32 - 1, given.astype(np.int64, copy=False))
-        return _arrays.whole("groups", given, self._count, 2**32 - 1)
+        return _arrays.whole("groups", groups, self._count, 2**32 - 2, none=-1)
 
     @property
     def vertex_count(self) -> int:
@@ -269,9 +277,7 @@ class Resolver:
         given_y = _arrays.points("y", y, self._count)
         given_start = None if start is None else _arrays.points("start", start, self._count)
         given_fixed = None if fixed is None else _arrays.flags("fixed", fixed, self._count)
-        result, text, signal = call(
-            self._native.resolve, given_x, given_y, given_fixed, given_start, dt, bool(check)
-        )
+        result, text, signal = call(self._native.resolve, given_x, given_y, given_fixed, given_start, dt, bool(check))
         if out is not None:
             np.copyto(out, result)
             result = out

@@ -295,6 +295,9 @@ def _split(what: str, entry: _Table) -> tuple[dict[str, Any], Mesh | None]:
         if arrays:
             raise InputError(f"{what}: {', '.join(arrays)} without vertices; give them as mesh")
         return plain, None
+    for other in ("shape", "sequence"):
+        if other in plain:
+            raise InputError(f"{what}.{other}: stands beside mesh; only one of them may be given")
     del plain["mesh"]
     found = mesh_of(mesh, **arrays, name=f"{what}.mesh")
     if len(found.vertices) == 0:

@@ -358,7 +358,7 @@ class Simulator:
         return np.array(force), np.array(torque)
 
     def pin_forces(self, name: str) -> NDArray[np.float64]:
-        """Forces that a pin exerted on its vertices in the last time step [N], shape (p, 3); empty if there was none."""
+        """Forces that a pin exerted on its vertices in the last time step [N], shape (p, 3); empty if none."""
         return call(self._native.pin_forces, name)
 
     def pin_wrench(
@@ -418,9 +418,7 @@ class Simulator:
 
     def set_external_forces(self, forces: ArrayLike) -> None:
         """Sets a force on each vertex of the simulation [N], shape (n, 3), which stays until it is set again."""
-        self._change(
-            self._native.set_external_forces, _arrays.points("forces", forces, len(self.positions))
-        )
+        self._change(self._native.set_external_forces, _arrays.points("forces", forces, len(self.positions)))
 
     def set_velocities(self, body: str, velocities: ArrayLike) -> None:
         """Sets the velocities of a deformable body [m/s], in the order of its mesh, shape (v, 3)."""

@@ -37,9 +37,7 @@ def value(key: str, given: Any) -> str:
         return "{ " + ", ".join(f"{_string(key, str(k))} = {value(f'{key}.{k}', v)}" for k, v in given.items()) + " }"
     if isinstance(given, (list, tuple)):
         return "[" + ", ".join(value(f"{key}[{i}]", v) for i, v in enumerate(given)) + "]"
-    raise InputError(
-        f"{key}: expected a number, a text, a list or a dict, got {type(given).__name__}"
-    )
+    raise InputError(f"{key}: expected a number, a text, a list or a dict, got {type(given).__name__}")
 
 
 def _string(key: str, text: str) -> str:
