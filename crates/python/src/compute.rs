@@ -76,8 +76,9 @@ pub fn compute<T: Send>(
 /// Sets the number of threads; 0: one per core, or that of the variable `RAYON_NUM_THREADS`.
 #[pyfunction]
 pub fn set_threads(count: usize) -> PyResult<()> {
+    let started = start(count)?;
     let mut pool = POOL.lock().map_err(error::internal)?;
-    *pool = Some((std::process::id(), start(count)?));
+    replace(&mut pool, started);
     Ok(())
 }
 
@@ -89,16 +90,24 @@ pub fn threads() -> PyResult<usize> {
 
 fn pool() -> PyResult<Arc<ThreadPool>> {
     let mut pool = POOL.lock().map_err(error::internal)?;
-    let process = std::process::id();
-    match &*pool {
-        Some((own, pool)) if *own == process => return Ok(Arc::clone(pool)),
-        // Its threads are in the parent process: to end them would be to wait for them.
-        Some(_) => std::mem::forget(pool.take()),
-        None => {}
+    if let Some((process, pool)) = &*pool
+        && *process == std::process::id()
+    {
+        return Ok(Arc::clone(pool));
     }
     let started = start(0)?;
-    *pool = Some((process, Arc::clone(&started)));
+    replace(&mut pool, Arc::clone(&started));
     Ok(started)
+}
+
+/// Puts a pool of this process in the place of another one.
+fn replace(pool: &mut Option<(u32, Arc<ThreadPool>)>, started: Arc<ThreadPool>) {
+    let process = std::process::id();
+    let before = pool.replace((process, started));
+    // The threads of a parent process are not here, so they cannot be told to end.
+    if before.as_ref().is_some_and(|(own, _)| *own != process) {
+        std::mem::forget(before);
+    }
 }
 
 fn start(count: usize) -> PyResult<Arc<ThreadPool>> {

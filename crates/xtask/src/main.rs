@@ -47,7 +47,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
 [--generated]
        cargo xtask mutations [NAME..]
        cargo xtask twins
-       cargo xtask wheel
+       cargo xtask wheel [--test]
 
 check     run what CI runs, in named steps: format, \
 clippy, docs, wasm, a small run, its exports read back, the Python
@@ -93,7 +93,8 @@ the workspace, and
 twins     write crates/gpu/src/kernels, what \
 the CPU runs in place of each kernel, from crates/gpu/shader: after every change of a
           shader
-wheel     build the Python package as a release uploads it, in target/wheels; needs Python with venv";
+wheel     build the Python package as a release uploads it, in target/wheels; needs Python with venv
+          --test        install it into an environment of its own and run its tests";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -126,7 +127,8 @@ fn main() -> ExitCode {
             mutations::run(&workspace::root(), names)
         }
         ["twins"] => twins::run(&workspace::root()),
-        ["wheel"] => wheel::run(&workspace::root()),
+        ["wheel"] => wheel::run(&workspace::root(), false),
+        ["wheel", "--test"] => wheel::run(&workspace::root(), true),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS

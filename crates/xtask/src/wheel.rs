@@ -13,23 +13,31 @@ use std::process::{Command, ExitCode};
 /// The crate of the package.
 const CRATE: &str = "crates/python";
 
-/// Builds the wheel and prints its path.
-pub fn run(root: &Path) -> ExitCode {
-    let target = target_folder(root);
-    let built = build(&mut command(root, &target)).and_then(|passed| match passed {
-        true => newest(&wheels(&target)),
-        false => Err(Error::other("maturin failed")),
-    });
-    match built {
+/// Builds the wheel and prints its path; tests it as well if asked to.
+pub fn run(root: &Path, with_tests: bool) -> ExitCode {
+    match build_and_test(root, &target_folder(root), with_tests) {
         Ok(wheel) => {
             println!("{}", wheel.display());
             ExitCode::SUCCESS
         }
         Err(error) => {
-            eprintln!("no wheel: {error}");
+            eprintln!("{error}");
             ExitCode::FAILURE
         }
     }
+}
+
+fn build_and_test(root: &Path, target: &Path, with_tests: bool) -> Result<PathBuf> {
+    if !build(&mut command(root, target))? {
+        return Err(Error::other("maturin built no wheel"));
+    }
+    if with_tests {
+        bowknot::build(root).map_err(Error::other)?;
+        if !test(&mut tests(root, target))? {
+            return Err(Error::other("the tests of the Python package failed"));
+        }
+    }
+    newest(&wheels(target))
 }
 
 /// Builds the wheel, into `target/wheels`.

@@ -22,7 +22,7 @@ from ._errors import (
 )
 from ._info import Info, StepInfo
 from ._meshes import Mesh, read_mesh
-from ._pictures import render
+from ._pictures import keep_silent, render
 from ._resolver import Resolver
 from ._runs import Run, report, run
 from ._scene import Scene, builtin_scenes
@@ -66,6 +66,7 @@ __all__ = [
 
 def gpus() -> list[str]:
     """The GPUs that are found, in the order of their numbers."""
+    keep_silent()
     return _native.gpus()
 
 

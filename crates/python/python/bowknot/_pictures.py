@@ -69,7 +69,7 @@ def render(
     InputError
         Shapes, types, a size that cannot be drawn.
     """
-    _keep_silent()
+    keep_silent()
     if quality not in ("fine", "fast"):
         raise InputError(f'quality {quality!r}: it must be "fine" or "fast"')
     drawn = _drawn(what, faces, radius)
@@ -132,7 +132,7 @@ def _surface(tets: NDArray[np.uint32]) -> NDArray[np.uint32]:
     return np.ascontiguousarray(sides[np.sort(first[count == 1])])
 
 
-def _keep_silent() -> None:
+def keep_silent() -> None:
     """Keeps a layer of Mesa's drivers from looking for a display where there can be none, as the command does."""
     is_set = any(os.environ.get(name) for name in ("XDG_RUNTIME_DIR", "MESA_VK_DEVICE_SELECT"))
     if sys.platform == "linux" and not is_set:

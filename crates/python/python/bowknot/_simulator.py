@@ -152,6 +152,8 @@ class Simulator:
             raise InputError(f"scene: expected a Scene, got {type(scene).__name__}")
         if device is not None and not 0 <= int(device) < 2**32:
             raise InputError(f"device {device}: it must be a whole number from 0 up")
+        if backend == "gpu":
+            _pictures.keep_silent()
         self._scene = scene.copy()
         self._options = (backend, device)
         self._native = call(_native.Simulator, scene._native, backend, device)
