@@ -31,6 +31,19 @@ def test_a_simulation_is_drawn(small):
     assert (colored != pixels).any()
 
 
+def test_what_is_not_there_is_not_drawn():
+    ball = {"type": "ball", "radius": 0.1, "edge": 0.05}
+    scene = bowknot.Scene(simulation={"dt": 0.01})
+    scene.add_body(*grid(3, 0.2), name="cloth")
+    scene.add_obstacle(shape=ball, translate=[0.3, 0, 0], name="first", vanishes=0.015)
+    options = {"size": (64, 48), "quality": "fast", "eye": [0, -2, 1], "target": [0, 0, 0]}
+    pictures = []
+    simulator = bowknot.Simulator(scene)
+    for _ in simulator.steps(3):
+        pictures.append(simulator.render(**options))
+    assert np.abs(pictures[0].astype(int) - pictures[2]).max() > 30
+
+
 def test_a_mesh_is_drawn():
     vertices, faces = grid(5)
     top = bowknot.render(vertices, faces, size=(64, 48), view="top", quality="fast")

@@ -97,14 +97,22 @@ def _drawn(what: Any, faces: ArrayLike | None, radius: float | None) -> SimpleNa
         if faces is not None:
             raise InputError("faces: a simulation has its own")
         count = layout["collision_vertices"]
+        present = np.array(call(what._native.present), np.bool_)
+        bodies = len(layout["names"])
+        is_there = present[:bodies][layout["body"]]
+
+        def there(elements: NDArray[np.uint32]) -> NDArray[np.uint32]:
+            first = elements if elements.ndim == 1 else elements[:, 0]
+            return np.ascontiguousarray(elements[is_there[first]])
+
         return SimpleNamespace(
             positions=np.ascontiguousarray(what.positions[:count]),
-            triangles=layout["faces"],
-            strands=layout["edges"],
-            particles=layout["particles"],
+            triangles=there(layout["faces"]),
+            strands=there(layout["edges"]),
+            particles=there(layout["particles"]),
             obstacle=layout["obstacle"],
             body=layout["body"],
-            planes=layout["planes"],
+            planes=np.ascontiguousarray(layout["planes"][present[bodies:]]),
             radius=float(layout["radius"] if radius is None else radius),
         )
     mesh = mesh_of(what, faces)
