@@ -3,11 +3,13 @@
 import json
 import multiprocessing
 import pickle
+import platform
+import re
 import subprocess
 
 import numpy as np
 import pytest
-from conftest import grid
+from conftest import ROOT, grid
 
 import bowknot
 from bowknot import Checkpoint, InputError, IntersectionError, Scene, Simulator
@@ -39,6 +41,30 @@ def test_results_have_the_bits_of_the_command(command, tmp_path, name):
     frame = f"frames/{FRAMES:06}.ply"
     assert (run.folder / frame).read_bytes() == (out / frame).read_bytes()
     assert run.stats[-1]["residual_m"] == lines[-1]["residual_m"]
+
+
+GOLDEN = ROOT / "crates" / "bowknot" / "tests" / "suite"
+
+
+def fnv(content):
+    """The 64-bit FNV-1a hash."""
+    value = 0xCBF29CE484222325
+    for byte in content:
+        value = ((value ^ byte) * 0x100000001B3) % 2**64
+    return value
+
+
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="the hashes are those of x86-64")
+def test_results_have_the_golden_hashes_of_the_library():
+    scenes = re.findall(r'\("([\w-]+)", ([\d.]+), (\d+)\)', (GOLDEN / "golden.rs").read_text(encoding="utf-8"))
+    accepted = (GOLDEN / "golden.txt").read_text(encoding="utf-8")
+    found = ""
+    for name, scale, frames in scenes:
+        simulator = Simulator(Scene.builtin(name, scale=float(scale)))
+        for _ in simulator.steps(int(frames)):
+            pass
+        found += f"{name} {fnv(simulator.positions.tobytes() + simulator.velocities.tobytes()):016x}\n"
+    assert len(scenes) == 5 and found == accepted
 
 
 def test_iteration_ends_with_the_frames_of_the_scene():
