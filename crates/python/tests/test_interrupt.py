@@ -17,6 +17,14 @@ import bowknot
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 
 
+@pytest.fixture(autouse=True)
+def heard():
+    """Python hears of Ctrl-C even if the tests were started in the background of a shell, where it is ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def interrupt_after(seconds):
     thread = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
     thread.start()
@@ -28,7 +36,7 @@ def long_problem():
     x, faces = two_sheets(60, 0.05)
     random = np.random.default_rng(3)
     y = x + random.normal(0.0, 3.0, x.shape)
-    settings = {"max_steps": 10**6, "distance": 1e-12, "stretch_tolerance": 1e-12}
+    settings = {"max_steps": 10**6, "max_seconds": 60.0, "distance": 1e-12, "stretch_tolerance": 1e-12}
     return x, y, faces, bowknot.Resolver(x, faces, **settings)
 
 
@@ -113,7 +121,9 @@ def test_other_threads_go_on_meanwhile():
 def test_a_run_that_is_interrupted_can_be_resumed(tmp_path):
     program = textwrap.dedent(
         f"""
+        import signal
         import bowknot
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         scene = bowknot.Scene.builtin("drape", scale=0.4)
         scene.set("simulation.frames", 100000)
         print("ready", flush=True)
