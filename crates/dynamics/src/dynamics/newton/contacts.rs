@@ -29,8 +29,9 @@ const MIN_STEP_LENGTH: f64 = 0.9;
 
 impl Newton<'_> {
     /// Computes the target with springs: makes Newton iterations until the forces that the linear system gave
-    /// to the contacts are those that the contacts have, then corrections. Only then the last system is solved
-    /// accurately: while contacts still open and close, what it finds does not last.
+    /// to the contacts are those that the contacts have, then corrections, then an accurate solve. With strands,
+    /// whose accurate solves take thousands of iterations, only if contacts have settled: while they open and
+    /// close, the line search keeps little of what such a solve finds.
     pub(super) fn solve_with_contacts(&mut self) -> Answer<NewtonInfo> {
         let accuracy = if self.is_first { Accuracy::Full } else { Accuracy::Inexact };
         let first = self.iterate(accuracy)?;
@@ -39,7 +40,7 @@ impl Newton<'_> {
         if self.model.has_strands() || last.reduction_ratio < MIN_REDUCTION_RATIO {
             self.correct(first.decrease(), &mut info)?;
         }
-        if is_settled {
+        if is_settled || !self.model.has_strands() {
             self.refine(&mut info)?;
         }
         Ok(info)

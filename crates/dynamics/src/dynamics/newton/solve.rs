@@ -1,8 +1,8 @@
 //! The sequence of Newton iterations from a state to the target.
 //!
-//! In each target the last linear system is solved accurately if its contacts have settled, and so is the first one
-//! of a time step and of a target without contacts. The solves between are inexact, as another linearization follows: an inexact
-//! Newton method (Dembo, Eisenstat and Steihaug 1982).
+//! In each target the last linear system is solved accurately, but not with strands whose contacts have not
+//! settled, and so is the first one of a time step and of a target without contacts. The solves between are
+//! inexact, as another linearization follows: an inexact Newton method (Dembo, Eisenstat and Steihaug 1982).
 
 use super::bodies::Answer;
 use super::corrections::MIN_REDUCTION_RATIO;
