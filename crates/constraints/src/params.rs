@@ -16,8 +16,10 @@ pub struct ContactParams {
     /// Contact distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster,
     /// rounder contacts with a visible gap; smaller: tighter contacts, more steps.
     pub delta: Option<f64>,
-    /// Minimum separation [m], xi: no step makes a smaller gap. Default a tenth of `delta`; 0 switches it
-    /// off, so that gaps are bounded by rounding alone. Refused below 16 ulp of the largest coordinate.
+    /// Minimum separation [m], xi: a step leaves this gap, or a tenth of the gap that the pair may have after it if
+    /// that is less. So small gaps can shrink from step to step; the `thickness` of bodies is never undercut. Default
+    /// a tenth of `delta`; 0 switches it off, so that gaps are bounded by rounding alone. Refused below 16 ulp of the
+    /// largest coordinate.
     pub min_separation: Option<f64>,
     /// Distance within which a pair is a candidate and becomes a contact row, in `delta`. Larger: contacts
     /// are found earlier, and the number of pairs grows with its square. Default 2 (paper: 4).
