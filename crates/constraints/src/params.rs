@@ -17,7 +17,7 @@ pub struct ContactParams {
     /// rounder contacts with a visible gap; smaller: tighter contacts, more steps.
     pub delta: Option<f64>,
     /// Minimum separation [m], xi: a step leaves this gap, or a tenth of the gap that the pair may have after it if
-    /// that is less. So small gaps can shrink from step to step; the `thickness` of bodies is never undercut. Default
+    /// that is less. So small gaps can shrink from step to step; with a `thickness` of the bodies they do not. Default
     /// a tenth of `delta`; 0 switches it off, so that gaps are bounded by rounding alone. Refused below 16 ulp of the
     /// largest coordinate.
     pub min_separation: Option<f64>,
