@@ -320,6 +320,29 @@ fn rubber_on_a_slope(friction: f64, repulsion: f64) -> (f64, f64, f64) {
 }
 
 #[test]
+fn the_velocity_filter_lets_cloth_stick_to_a_slope_and_slide_by_coulombs_law() {
+    let (sin, cos) = (25f64.to_radians().sin(), 25f64.to_radians().cos());
+    let speed = |friction: f64| {
+        let mut simulator = simulator(&format!(
+            "[contact]\nfriction_model = \"filter\"\n\
+             [[body]]\nname = \"cloth\"\nfriction = {friction}\nrotate = [0, 25, 0]\n\
+             shape = {{ type = \"sheet\", size = [0.2, 0.2] }}\ntranslate = [{}, 0, {}]\n\
+             [[obstacle]]\nname = \"slope\"\nshape = \"half-space\"\nrotate = [0, 25, 0]\nfriction = {friction}\n",
+            0.003 * sin,
+            0.003 * cos
+        ));
+        let mass = simulator.dynamics_model().total_mass();
+        let statistics = run(&mut simulator, 60);
+        [19, 59].map(|step| Vector::from(statistics[step].momentum).norm() / mass)
+    };
+    let [_, stuck] = speed(0.6);
+    assert!(stuck < 1e-3, "{stuck} m/s");
+    let [before, after] = speed(0.3);
+    let (acceleration, expected) = ((after - before) / 0.4, 9.81 * (sin - 0.3 * cos));
+    assert!((acceleration - expected).abs() < 0.02 * expected, "{acceleration} instead of {expected} m/s2");
+}
+
+#[test]
 fn a_stiff_block_sticks_to_a_slope_and_slides_as_a_rigid_one() {
     let (way, acceleration, stuck) = rubber_on_a_slope(0.5, 1.0);
     assert!(way < 2e-3 && acceleration.abs() < 1e-6 && stuck < 1e-3, "{way} {acceleration} {stuck}");

@@ -19,7 +19,7 @@ use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
 use bowknot_twoway::lcp::DistanceLimit;
-use bowknot_twoway::{PairMultipliers, Resolver};
+use bowknot_twoway::{CollisionScene, ContactSet, PairMultipliers, Resolver};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
@@ -213,7 +213,7 @@ impl Contacts {
             let held = in_range.par_iter().filter(|(place, _)| pushes(place)).filter_map(|&(place, used)| {
                 let vertex = *used.iter().find(|v| newton.moves(**v))?;
                 let held = is_half_space || !used.iter().all(|&v| newton.moves(v));
-                let rough = contacts.frictions.get(place).is_some_and(|friction| *friction > 0.0);
+                let rough = is_rough(scene, contacts, kind, place);
                 let normal = || {
                     let separation = &contacts.separations[place];
                     let features = scene.features(kind, &pairs[place], separation);
@@ -316,4 +316,15 @@ impl Contacts {
     pub fn apply(&self, dynamics: &mut Dynamics) -> Result<(), StepError> {
         if self.stiffness == 0.0 { Ok(()) } else { dynamics.set_repulsion(&self.found.springs) }
     }
+}
+
+/// Whether there is friction between the sides of a candidate pair. The velocity filter has none in the rows.
+fn is_rough(scene: &CollisionScene, contacts: &ContactSet, kind: PairKind, place: usize) -> bool {
+    let friction = match scene.friction_model() {
+        FrictionModel::Filter => {
+            Some(scene.contact().friction_of_pair(scene.model(), kind, &contacts.pairs.pairs()[place]))
+        }
+        _ => contacts.frictions.get(place).copied(),
+    };
+    friction.is_some_and(|friction| friction > 0.0)
 }
