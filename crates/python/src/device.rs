@@ -1,26 +1,19 @@
-//! The GPU, where the package is built with it.
+//! The GPU.
 
 use crate::error;
 use bowknot::Simulator;
+use bowknot::dynamics::NewtonBackend;
+use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine};
 use pyo3::prelude::*;
 
 /// The devices, one line each.
 #[pyfunction]
-#[cfg(feature = "gpu")]
 pub fn gpus(py: Python<'_>) -> Vec<String> {
-    use bowknot::gpu::Adapter;
     let line = |adapter: &Adapter| match adapter.lacks() {
         None => adapter.to_string(),
         Some(what) => format!("{adapter}: cannot be used, it has no {what}"),
     };
     py.detach(|| Adapter::all().iter().map(line).collect())
-}
-
-/// The devices: none.
-#[pyfunction]
-#[cfg(not(feature = "gpu"))]
-pub fn gpus() -> Vec<String> {
-    Vec::new()
 }
 
 /// Lets the CPU or a device compute a simulation.
@@ -33,10 +26,7 @@ pub fn set_backends(simulator: &mut Simulator, backend: &str, device: Option<usi
     }
 }
 
-#[cfg(feature = "gpu")]
 fn set_device(simulator: &mut Simulator, device: Option<usize>) -> PyResult<()> {
-    use bowknot::dynamics::NewtonBackend;
-    use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine};
     let adapter = Adapter::choose(device).map_err(error::device)?;
     let engine = DeviceEngine::open(&adapter).map_err(error::device)?;
     let name = format!("gpu: {adapter}");
@@ -46,11 +36,4 @@ fn set_device(simulator: &mut Simulator, device: Option<usize>) -> PyResult<()> 
     simulator.set_backend(Box::new(Device::new(name, engine))).map_err(error::simulation)?;
     let dynamics = dynamics.map(|dynamics| Box::new(dynamics) as Box<dyn NewtonBackend>);
     simulator.set_dynamics_backend(dynamics).map_err(error::simulation)
-}
-
-#[cfg(not(feature = "gpu"))]
-fn set_device(_: &mut Simulator, _: Option<usize>) -> PyResult<()> {
-    Err(error::device(
-        "this bowknot was built without the feature `gpu`: build it with it, or use backend=\"cpu\"",
-    ))
 }

@@ -1,12 +1,16 @@
 //! Pictures as arrays of pixels.
 
-use crate::arrays::{Indices, Rows};
-use numpy::{PyArray3, PyReadonlyArray1};
+use crate::arrays::{self, Indices, Rows};
+use crate::compute::compute;
+use crate::error;
+use bowknot_render::{
+    Camera, Elements, Fit, Frame, Model, Quality, RenderError, Renderer, Shot, Style, View,
+};
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 /// What is drawn.
 #[derive(FromPyObject)]
-#[cfg_attr(not(feature = "render"), allow(dead_code))]
 pub struct Drawn<'py> {
     positions: Rows<'py>,
     triangles: Indices<'py>,
@@ -21,7 +25,6 @@ pub struct Drawn<'py> {
 
 /// How it is drawn.
 #[derive(FromPyObject)]
-#[cfg_attr(not(feature = "render"), allow(dead_code))]
 pub struct Look {
     size: [u32; 2],
     view: String,
@@ -33,16 +36,7 @@ pub struct Look {
 
 /// Draws a picture: an array of shape (height, width, 3).
 #[pyfunction]
-#[cfg(feature = "render")]
 pub fn render<'py>(py: Python<'py>, drawn: Drawn<'_>, look: Look) -> PyResult<Bound<'py, PyArray3<u8>>> {
-    use crate::arrays;
-    use crate::compute::compute;
-    use crate::error;
-    use bowknot_render::{
-        Camera, Elements, Fit, Frame, Model, Quality, RenderError, Renderer, Shot, Style, View,
-    };
-    use numpy::{PyArray1, PyArrayMethods};
-
     let refused = |failed: RenderError| match failed {
         RenderError::NoDriver { .. } | RenderError::Device { .. } | RenderError::OutOfMemory { .. } => {
             error::device(failed)
@@ -98,11 +92,4 @@ pub fn render<'py>(py: Python<'py>, drawn: Drawn<'_>, look: Look) -> PyResult<Bo
     let picture = picture.finish()??;
     let (height, width) = (picture.height as usize, picture.width as usize);
     PyArray1::from_vec(py, picture.pixels.into_iter().flatten().collect()).reshape([height, width, 3])
-}
-
-/// Refuses: there is nothing to draw with.
-#[pyfunction]
-#[cfg(not(feature = "render"))]
-pub fn render<'py>(_drawn: Drawn<'_>, _look: Look) -> PyResult<Bound<'py, PyArray3<u8>>> {
-    Err(crate::error::device("this bowknot was built without the feature `render`"))
 }
