@@ -4,10 +4,11 @@ use crate::error::CheckError;
 use crate::judge::Judge;
 use crate::path::is_above;
 use crate::primitives::{Scene, closest_points, gather, pairs};
-use crate::report::{Intersection, PairClass, StateOptions, StateReport};
+use crate::report::{BodyPair, Intersection, PairClass, StateOptions, StateReport};
 use crate::walk::Meeting;
 use bowknot_geometry::{Point, intersection};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// A pair that intersects.
 type FoundPair = (PairClass, [u32; 2]);
@@ -86,24 +87,30 @@ impl Judge {
         ));
         found.par_sort_unstable();
 
-        let intersections = found.iter().take(options.limit).map(|found| self.describe(x, found)).collect();
+        let intersections: Vec<Intersection> = found.par_iter().map(|found| self.describe(x, found)).collect();
+        let body_pairs = by_bodies(intersections.iter().map(|i| (i.bodies, Some(i.depth), i.place)));
+        let intersections = intersections.into_iter().take(options.limit).collect();
         let nearest = if options.distance { self.nearest(x, scene) } else { None };
-        Ok(StateReport { intersections, intersection_count: found.len(), edge_triangle_count, nearest })
+        let intersection_count = found.len();
+        Ok(StateReport { intersections, intersection_count, edge_triangle_count, body_pairs, nearest })
     }
 
     fn describe(&self, x: &[Point], &(class, elements): &FoundPair) -> Intersection {
         let sides = self.sides(class, elements);
-        let place = match class {
+        let (place, depth) = match class {
             PairClass::EdgeTriangle => {
                 let point = |v: u32| x[v as usize];
                 let [edge, triangle] = sides;
                 crossing([edge[0], edge[1]].map(point), [triangle[0], triangle[1], triangle[2]].map(point))
             }
-            PairClass::VertexHalfSpace => x[elements[0] as usize],
-            _ => closest_points(class, &gather(x, sides)).0[0],
+            PairClass::VertexHalfSpace => {
+                let ([vertex, _], height) = self.half_space_places(elements, &x[elements[0] as usize]);
+                (vertex, (-height).max(0.0))
+            }
+            _ => (closest_points(class, &gather(x, sides)).0[0], 0.0),
         };
         let vertices = sides.map(<[u32]>::to_vec);
-        Intersection { class, elements, vertices, bodies: self.side_bodies(sides), place }
+        Intersection { class, elements, vertices, bodies: self.side_bodies(sides), place, depth }
     }
 }
 
@@ -119,15 +126,18 @@ fn touch(x: &[Point], a: &[u32], b: &[u32]) -> bool {
     }
 }
 
-/// A point of the overlap of an edge and a triangle, to rounding: where the edge crosses the triangle's
-/// plane, or if it runs along that, the best of the closest points of the edge with the triangle's edges
-/// and of its ends with the triangle.
-fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> Point {
+/// A point of the overlap of an edge and a triangle, and how deep it is, to rounding: where the edge crosses
+/// the triangle's plane, or if it runs along that, the best of the closest points of the edge with the
+/// triangle's edges and of its ends with the triangle.
+fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> (Point, f64) {
     let normal = (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0]));
     let heights = edge.map(|p| normal.dot(&(p - triangle[0])));
     let [p, q] = edge;
     if heights[0] * heights[1] < 0.0 {
-        return p + (q - p) * (heights[0] / (heights[0] - heights[1]));
+        let nearer = heights[0].abs().min(heights[1].abs());
+        // The length of a tiny normal may underflow.
+        let depth = (nearer / normal.norm()).min((q - p).norm());
+        return (p + (q - p) * (heights[0] / (heights[0] - heights[1])), depth);
     }
     let [a, b, c] = triangle;
     let candidates = [
@@ -138,5 +148,24 @@ fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> Point {
         (PairClass::EdgeEdge, [p, q, c, a]),
     ];
     let measured = candidates.map(|(class, points)| closest_points(class, &points));
-    measured.iter().fold(&measured[0], |best, next| if next.1 < best.1 { next } else { best }).0[0]
+    let best = measured.iter().fold(&measured[0], |best, next| if next.1 < best.1 { next } else { best });
+    (best.0[0], 0.0)
+}
+
+/// Counts pairs of primitives by their bodies. Of each the deepest place is kept, of equal ones the first.
+pub(super) fn by_bodies(
+    pairs: impl Iterator<Item = ([Option<u32>; 2], Option<f64>, Point)>,
+) -> Vec<BodyPair> {
+    // Half-spaces have no number and come last.
+    let key = |body: Option<u32>| (body.is_none(), body);
+    let mut counted = BTreeMap::new();
+    for (mut bodies, depth, place) in pairs {
+        bodies.sort_by_key(|body| key(*body));
+        let pair = counted.entry(bodies.map(key)).or_insert(BodyPair { bodies, count: 0, depth, place });
+        pair.count += 1;
+        if depth > pair.depth {
+            (pair.depth, pair.place) = (depth, place);
+        }
+    }
+    counted.into_values().collect()
 }

@@ -22,8 +22,11 @@ pub struct Parts<'a> {
     /// Whether each vertex is of an obstacle; empty: none is. A primitive is of an obstacle if all its
     /// vertices are.
     pub obstacle: &'a [bool],
-    /// Body of each vertex, for reports; empty: all are of body 0.
+    /// Body of each vertex, for reports and filters; empty: all are of body 0.
     pub body: &'a [u32],
+    /// Which bodies meet, and which meet themselves, one entry per body; bodies without one meet all. What is an
+    /// obstacle is said by `obstacle` alone.
+    pub filters: &'a [BodyFilter],
     /// Half-spaces, which every vertex not of an obstacle must be above.
     pub half_spaces: &'a [HalfSpace],
 }
@@ -45,7 +48,7 @@ pub struct Judge {
     pub(super) obstacle: Vec<bool>,
     /// One entry per vertex.
     body: Vec<u32>,
-    /// One entry per body, or empty: all bodies meet.
+    /// See [`Parts::filters`].
     filters: Vec<BodyFilter>,
 }
 
@@ -103,7 +106,7 @@ impl Judge {
             uncovered,
             obstacle: [parts.obstacle, &vec![false; or_default(!parts.obstacle.is_empty())]].concat(),
             body: [parts.body, &vec![0; or_default(!parts.body.is_empty())]].concat(),
-            filters: Vec::new(),
+            filters: parts.filters.to_vec(),
         })
     }
 
@@ -121,10 +124,10 @@ impl Judge {
             obstacle: &obstacle,
             body: model.vertex_body(),
             half_spaces: model.half_spaces(),
+            filters: model.bodies(),
         };
         // A model has passed these checks already, so the default is never taken.
-        let judge = Self::new(&parts).unwrap_or_default();
-        Self { filters: model.bodies().to_vec(), ..judge }
+        Self::new(&parts).unwrap_or_default()
     }
 
     /// All edges, of triangles and strands: smaller vertex first, ascending, each once.

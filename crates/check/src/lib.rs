@@ -49,5 +49,5 @@ pub use error::CheckError;
 pub use judge::{Judge, Parts};
 pub use motion::MotionJudge;
 pub use report::{
-    Intersection, Nearest, PairClass, PathHit, PathOptions, PathReport, StateOptions, StateReport,
+    BodyPair, Intersection, Nearest, PairClass, PathHit, PathOptions, PathReport, StateOptions, StateReport,
 };

@@ -4,6 +4,7 @@
 //! certifies each, or calls it a hit.
 
 use crate::error::CheckError;
+use crate::intersections::by_bodies;
 use crate::judge::Judge;
 use crate::primitives::{Scene, closest_points, gather, pair_kind};
 use crate::report::{PairClass, PathHit, PathOptions, PathReport};
@@ -75,8 +76,10 @@ impl Judge {
         let mut hits: Vec<Hit> = looks.into_iter().flat_map(|looks| looks.hits).chain(below).collect();
         hits.par_sort_unstable_by_key(|hit| (hit.class, hit.elements));
         let hit_count = hits.len();
-        let hits = hits.iter().take(options.limit).map(|hit| self.describe_hit(x0, x1, hit)).collect();
-        Ok(PathReport { hits, hit_count, candidates })
+        let hits: Vec<PathHit> = hits.par_iter().map(|hit| self.describe_hit(x0, x1, hit)).collect();
+        let body_pairs = by_bodies(hits.iter().map(|hit| (hit.bodies, None, hit.places[0])));
+        let hits = hits.into_iter().take(options.limit).collect();
+        Ok(PathReport { hits, hit_count, body_pairs, candidates })
     }
 
     /// Vertices that are not certainly above a half-space at either end; between the ends a vertex

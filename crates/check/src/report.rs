@@ -53,6 +53,10 @@ pub struct Intersection {
     pub bodies: [Option<u32>; 2],
     /// A point of the overlap, to rounding [m].
     pub place: Point,
+    /// How far the nearer end of the edge lies behind the plane of the triangle, or the vertex below the
+    /// half-space [m]: moved by so much along the normal, this edge would leave this triangle. 0 for pairs
+    /// that touch. An edge is no deeper than half its length, however deep its mesh is in the other.
+    pub depth: f64,
 }
 
 /// The closest two primitives of a state.
@@ -71,6 +75,20 @@ pub struct Nearest {
     pub places: [Point; 2],
     /// Their distance, to rounding [m]; negative only below a half-space.
     pub distance: f64,
+}
+
+/// How two bodies, or one with itself, intersect.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
+pub struct BodyPair {
+    /// The two bodies, ascending; half-spaces are `None` and come last.
+    pub bodies: [Option<u32>; 2],
+    /// How many pairs of primitives intersect, or meet on a path.
+    pub count: usize,
+    /// The deepest of these intersections [m], see [`Intersection::depth`]; `None` on a path.
+    pub depth: Option<f64>,
+    /// Where the deepest one is, or the first that meet on a path [m].
+    pub place: Point,
 }
 
 /// What [`super::Judge::check_state`] computes.
@@ -98,6 +116,8 @@ pub struct StateReport {
     pub intersection_count: usize,
     /// How many of them are an edge and a triangle.
     pub edge_triangle_count: usize,
+    /// The bodies that intersect, ascending; all intersections are counted.
+    pub body_pairs: Vec<BodyPair>,
     /// The closest pair, if asked for and if there is any pair.
     pub nearest: Option<Nearest>,
 }
@@ -150,6 +170,8 @@ pub struct PathReport {
     pub hits: Vec<PathHit>,
     /// How many pairs are hits in all.
     pub hit_count: usize,
+    /// The bodies that meet, ascending; all hits are counted.
+    pub body_pairs: Vec<BodyPair>,
     /// How many pairs' moving boxes met, so that they were looked at one by one.
     pub candidates: usize,
 }
@@ -163,22 +185,43 @@ impl PathReport {
 
 impl fmt::Display for Intersection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        describe(f, self.class, &self.elements, &self.vertices, &self.bodies)?;
-        write!(f, " intersect at {}", Place(&self.place))
+        f.write_str(&self.in_words(&[]))
     }
 }
 
 impl fmt::Display for Nearest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        describe(f, self.class, &self.elements, &self.vertices, &self.bodies)?;
-        write!(f, " are {:.3e} m apart at {}", self.distance, Place(&self.places[0]))
+        f.write_str(&self.in_words(&[]))
     }
 }
 
 impl fmt::Display for PathHit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        describe(f, self.class, &self.elements, &self.vertices, &self.bodies)?;
-        write!(f, " meet at {} after {:.9} of the path", Place(&self.places[0]), self.time)
+        f.write_str(&self.in_words(&[]))
+    }
+}
+
+impl Intersection {
+    /// The intersection in words. Bodies have their names, as far as there are any.
+    pub fn in_words(&self, names: &[String]) -> String {
+        let pair = pair_in_words(self.class, &self.elements, &self.vertices, &self.bodies, names);
+        format!("{pair} intersect at {}", Place(&self.place))
+    }
+}
+
+impl Nearest {
+    /// The pair in words. Bodies have their names, as far as there are any.
+    pub fn in_words(&self, names: &[String]) -> String {
+        let pair = pair_in_words(self.class, &self.elements, &self.vertices, &self.bodies, names);
+        format!("{pair} are {:.3e} m apart at {}", self.distance, Place(&self.places[0]))
+    }
+}
+
+impl PathHit {
+    /// The hit in words. Bodies have their names, as far as there are any.
+    pub fn in_words(&self, names: &[String]) -> String {
+        let pair = pair_in_words(self.class, &self.elements, &self.vertices, &self.bodies, names);
+        format!("{pair} meet at {} after {:.9} of the path", Place(&self.places[0]), self.time)
     }
 }
 
@@ -190,21 +233,21 @@ impl fmt::Display for Place<'_> {
     }
 }
 
-fn describe(
-    f: &mut fmt::Formatter<'_>,
+fn pair_in_words(
     class: PairClass,
     elements: &[u32; 2],
     vertices: &[Vec<u32>; 2],
     bodies: &[Option<u32>; 2],
-) -> fmt::Result {
-    for side in 0..2 {
-        let separator = if side == 0 { "" } else { " and " };
-        write!(f, "{separator}{} {}", class.sides()[side], elements[side])?;
-        let Some(body) = bodies[side] else { continue };
+    names: &[String],
+) -> String {
+    let side = |side: usize| {
+        let element = format!("{} {}", class.sides()[side], elements[side]);
+        let Some(body) = bodies[side] else { return element };
+        let body = names.get(body as usize).map_or_else(|| format!("body {body}"), Clone::clone);
         match vertices[side].as_slice() {
-            [_] => write!(f, " of body {body}")?,
-            list => write!(f, " (vertices {list:?}) of body {body}")?,
+            [_] => format!("{element} of {body}"),
+            list => format!("{element} (vertices {list:?}) of {body}"),
         }
-    }
-    Ok(())
+    };
+    format!("{} and {}", side(0), side(1))
 }

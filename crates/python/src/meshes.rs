@@ -58,6 +58,7 @@ impl Owned {
             obstacle: &self.obstacle,
             body: &self.body,
             half_spaces: &self.half_spaces,
+            filters: &[],
         };
         Judge::new(&parts).map_err(error::input)
     }

@@ -23,6 +23,7 @@ fn crowd(random: &mut Random) -> (Judge, Vec<Point>) {
         obstacle: &obstacle,
         body: &body,
         half_spaces: &half_spaces,
+        filters: &[],
     });
     (judge.expect("valid parts"), x)
 }

@@ -228,6 +228,48 @@ fn obstacles_and_filters_are_exempt() {
     assert_eq!(bodies_met(&judge), [pair(0, 2)]);
 }
 
+/// A spike of body 1 stands 3 cm through a sheet of body 0; body 2 lies below the ground and crosses itself.
+#[test]
+fn pairs_of_bodies_are_counted_with_their_depth() {
+    let (mut x, mut triangles) = sheet(3, 0.0, 0);
+    x.extend(points(&[[0.3, 0.2, -0.03], [0.3, 0.2, 1.0], [0.31, 0.2, 1.0]]));
+    triangles.push([9, 10, 11]);
+    x.extend(points(&[[5.0, 0.0, -0.4], [6.0, 0.0, -0.4], [5.0, 1.0, -0.4]]));
+    x.extend(points(&[[5.2, 0.2, -0.2], [5.2, 0.2, -0.5], [5.3, 0.2, -0.2]]));
+    triangles.extend([[12, 13, 14], [15, 16, 17]]);
+    let body: Vec<u32> = [vec![0; 9], vec![1; 3], vec![2; 6]].concat();
+    let ground = HalfSpace::new(Point::new(0.0, 0.0, -0.1), Vector::z()).expect("a normal");
+    let parts = Parts { vertex_count: 18, triangles: &triangles, body: &body, ..Parts::default() };
+    let judge = Judge::new(&Parts { half_spaces: &[ground], ..parts }).expect("valid parts");
+    let options = StateOptions { limit: 1, distance: false };
+    let found = judge.check_state(&x, &options).expect("valid points");
+    assert_eq!(found.intersections.len(), 1);
+    let rows: Vec<_> = found.body_pairs.iter().map(|pair| (pair.bodies, pair.count)).collect();
+    assert_eq!(rows, [([Some(0), Some(1)], 2), ([Some(2), Some(2)], 2), ([Some(2), None], 6)]);
+    let depth = |index: usize| found.body_pairs[index].depth.expect("of a state");
+    assert!((depth(0) - 0.03).abs() < 1e-12 && (depth(1) - 0.1).abs() < 1e-12, "{found:?}");
+    assert!((depth(2) - 0.4).abs() < 1e-12, "{found:?}");
+    assert!((found.body_pairs[2].place - Point::new(5.2, 0.2, -0.5)).norm() < 1e-12);
+    assert_eq!(found.body_pairs.iter().map(|pair| pair.count).sum::<usize>(), found.intersection_count);
+
+    // Body 2 may cross itself. The filters of the others are the default.
+    let filters = [BodyFilter::DEFORMABLE; 2].into_iter();
+    let filters: Vec<_> =
+        filters.chain([BodyFilter { self_collision: false, ..BodyFilter::DEFORMABLE }]).collect();
+    let judge = Judge::new(&Parts { filters: &filters, ..parts }).expect("valid parts");
+    let found = judge.check_state(&x, &options).expect("valid points");
+    assert_eq!((found.intersection_count, found.body_pairs.len()), (2, 1));
+
+    // On the way from above, the spike meets the sheet too.
+    let mut above = x.clone();
+    above[9..12].iter_mut().for_each(|p| p.z += 1.0);
+    let judge = Judge::new(&Parts { filters: &filters, ..parts }).expect("valid parts");
+    let path = judge.check_path(&above, &x, &PathOptions::default()).expect("valid points");
+    let rows: Vec<_> = path.body_pairs.iter().map(|pair| (pair.bodies, pair.count, pair.depth)).collect();
+    assert_eq!(rows, [([Some(0), Some(1)], path.hit_count, None)]);
+    assert!(path.hit_count > 0);
+}
+
 #[test]
 fn bad_input_is_refused() {
     let parts = Parts { vertex_count: 3, ..Parts::default() };

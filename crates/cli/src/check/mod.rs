@@ -331,7 +331,7 @@ fn judge_of(mesh: &Mesh, vertex_count: usize, marked: [&[bool]; 2]) -> Result<Ju
         particles: &mesh.particles,
         obstacle: mesh.obstacle.as_deref().unwrap_or(&[]),
         body: mesh.body.as_deref().unwrap_or(&[]),
-        half_spaces: &[],
+        ..Parts::default()
     })
 }
 

@@ -158,7 +158,7 @@ impl<'a> Pair<'a> {
             particles: &particles,
             obstacle: &obstacle,
             body: &body,
-            half_spaces: &[],
+            ..Parts::default()
         };
         // The world has these elements, so both take them.
         let judge = Judge::new(&parts).unwrap_or_default();
