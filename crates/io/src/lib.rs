@@ -33,7 +33,7 @@ pub use bowknot_geometry as geometry;
 pub use atomic::{create_folder, write_atomic, write_text};
 pub use error::{IoError, Place};
 pub use folder::files_in;
-pub use frame_source::FrameSource;
+pub use frame_source::{FrameOptions, FrameSource};
 pub use import::{Import, Up};
 pub use mesh::{Mesh, MeshView};
 pub use msh::write_msh;

@@ -9,7 +9,7 @@ use crate::error::{IoError, Place};
 use bowknot_geometry::Point;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const MAGIC: &[u8; 12] = b"POINTCACHE2\0";
 const HEADER: u64 = 32;
@@ -50,6 +50,93 @@ pub fn write_pc2_frame(path: &Path, frame: usize, positions: &[Point]) -> Result
     append().map_err(system)
 }
 
+/// A point cache that is read sample by sample.
+#[derive(Clone, Debug)]
+pub(crate) struct PointCache {
+    path: PathBuf,
+    points: usize,
+    samples: usize,
+}
+
+impl PointCache {
+    /// Reads the header, and whether the file is as long as it says.
+    ///
+    /// # Errors
+    /// The system's refusal; a file that is no point cache, or is cut.
+    pub fn open(path: &Path) -> Result<Self, IoError> {
+        let system = |source| IoError::system("read", path, source);
+        let fault = |message: String| Err(IoError::content(path, Place::File, message));
+        let mut file = File::open(path).map_err(system)?;
+        let mut header = [0; HEADER as usize];
+        if file.read_exact(&mut header).is_err() || !header.starts_with(MAGIC) {
+            return fault("not a point cache".to_owned());
+        }
+        let (points, samples) = (number_at(&header, 16), number_at(&header, SAMPLES_AT as usize));
+        if points == 0 {
+            return fault("it has no points".to_owned());
+        }
+        // Both are below 2^31.
+        let (expected, length) =
+            (u128::from(HEADER) + 12 * points as u128 * samples as u128, file.metadata());
+        let length = length.map_err(system)?.len();
+        if u128::from(length) < expected {
+            return fault(format!(
+                "it has {length} bytes; {samples} samples of {points} points take {expected}"
+            ));
+        }
+        Ok(Self { path: path.to_owned(), points, samples })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Points of each sample.
+    pub fn points(&self) -> usize {
+        self.points
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// The points of a sample.
+    ///
+    /// # Errors
+    /// The system's refusal; coordinates that are not finite.
+    pub fn read(&self, sample: usize) -> Result<Vec<Point>, IoError> {
+        let mut bytes = Vec::new();
+        let size = 12 * self.points as u64;
+        let mut read = || {
+            let mut file = File::open(&self.path)?;
+            file.seek(SeekFrom::Start(HEADER + size * sample as u64))?;
+            match file.take(size).read_to_end(&mut bytes)? as u64 == size {
+                true => Ok(()),
+                false => Err(ErrorKind::UnexpectedEof.into()),
+            }
+        };
+        read().map_err(|source| IoError::system("read", &self.path, source))?;
+        let numbers: Vec<f64> =
+            bytes.as_chunks::<4>().0.iter().map(|&b| f32::from_le_bytes(b).into()).collect();
+        let points: Vec<Point> = numbers.as_chunks::<3>().0.iter().map(|&p| Point::from(p)).collect();
+        match points.iter().position(|point| !point.iter().all(|c| c.is_finite())) {
+            None => Ok(points),
+            Some(point) => {
+                let message = format!("point {point} is not finite");
+                Err(IoError::content(&self.path, Place::Element("sample".to_owned(), sample), message))
+            }
+        }
+    }
+}
+
+/// The number at a place of a header; 0 if it is negative.
+fn number_at(header: &[u8; HEADER as usize], at: usize) -> usize {
+    let bytes = [header[at], header[at + 1], header[at + 2], header[at + 3]];
+    usize::try_from(i32::from_le_bytes(bytes)).unwrap_or(0)
+}
+
 /// Drops the samples from `frames` on.
 ///
 /// # Errors
@@ -63,11 +150,7 @@ pub fn truncate_pc2(path: &Path, frames: usize, points: usize) -> Result<(), IoE
     if file.read_exact(&mut header).is_err() || !header.starts_with(MAGIC) {
         return fault("not a point cache".to_owned());
     }
-    let number = |at: usize| {
-        let bytes = [header[at], header[at + 1], header[at + 2], header[at + 3]];
-        usize::try_from(i32::from_le_bytes(bytes)).unwrap_or(0)
-    };
-    let (given, samples) = (number(16), number(SAMPLES_AT as usize));
+    let (given, samples) = (number_at(&header, 16), number_at(&header, SAMPLES_AT as usize));
     if given != points {
         return fault(format!("it is a point cache of {given} points, not of {points}"));
     }

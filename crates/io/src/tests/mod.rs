@@ -7,6 +7,7 @@ mod obj;
 mod ply;
 mod polygons;
 mod robust;
+mod sources;
 mod surface;
 
 use super::*;
