@@ -4,7 +4,7 @@
 //!
 //! | feature | adds | costs |
 //! |---|---|---|
-//! | `files` | NumPy archives, checkpoint files, `run`, `recording`, `repair` | ndarray, zip, flate2 |
+//! | `files` | NumPy archives, checkpoint files, `run`, `recording`, `repair`, `judging` | ndarray, zip, flate2 |
 //! | `report` | `report`, the HTML page of a run | `files`, and 1 MB of scripts |
 //! | `gpu` | `gpu`, collisions and dynamics on a GPU | wgpu |
 //!
@@ -15,6 +15,8 @@
 
 #[cfg(feature = "gpu")]
 pub mod gpu;
+#[cfg(feature = "files")]
+pub mod judging;
 #[cfg(feature = "files")]
 pub mod recording;
 #[cfg(feature = "files")]

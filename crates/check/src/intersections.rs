@@ -87,7 +87,8 @@ impl Judge {
         ));
         found.par_sort_unstable();
 
-        let intersections: Vec<Intersection> = found.par_iter().map(|found| self.describe(x, found)).collect();
+        let intersections: Vec<Intersection> =
+            found.par_iter().map(|found| self.describe(x, found)).collect();
         let body_pairs = by_bodies(intersections.iter().map(|i| (i.bodies, Some(i.depth), i.place)));
         let intersections = intersections.into_iter().take(options.limit).collect();
         let nearest = if options.distance { self.nearest(x, scene) } else { None };

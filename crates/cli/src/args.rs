@@ -136,17 +136,50 @@ pub struct ResolveOptions {
 
 #[derive(Debug, Args)]
 pub struct CheckOptions {
-    /// States (.ply, .obj, .npz, .msh, .t, .seg), folders of frames, or folders of runs; in a folder `trace`
-    /// the path between successive files is checked too
+    /// Meshes, animations (.usda, .glb, .pc2, .pvd, .npz), recorded collision problems, folders of frames, or
+    /// folders of runs; in a folder `trace` the path between successive files is checked too
     #[arg(required = true, value_name = "PATH")]
     pub paths: Vec<PathBuf>,
+    /// Also check the straight paths between the frames of animations. What meets there is a hint and no
+    /// failure, since the motion between frames is not known
+    #[arg(long = "paths")]
+    pub between_frames: bool,
+    /// Take all PATHs as parts of one scene, frame by frame; those of one frame stand still
+    #[arg(long)]
+    pub together: bool,
+    /// A part that is an obstacle: it may intersect itself and other obstacles. `*` in a name stands for
+    /// anything; may be repeated
+    #[arg(long, value_name = "PART")]
+    pub obstacle: Vec<String>,
+    /// A part that may intersect itself; may be repeated
+    #[arg(long, value_name = "PART")]
+    pub may_intersect: Vec<String>,
+    /// A part that is not checked; may be repeated
+    #[arg(long, value_name = "PART")]
+    pub leave_out: Vec<String>,
     /// Also fail if two triangles, strands or grains that share no vertex are nearer than this [m; for other
     /// meshes in the unit of their files]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub min_distance: Option<f64>,
+    /// Axis of the files that points up, which matters for --picture only [default: z]
+    #[arg(long, value_enum)]
+    pub up: Option<Up>,
+    /// Length of the unit of the files [m; default: 1], 0.01 for centimeters
+    #[arg(long, value_name = "F", value_parser = positive)]
+    pub scale: Option<f64>,
+    /// Frames per second of files that have motion but no frames, as glTF [default: the times of their keys]
+    #[arg(long, value_name = "RATE", value_parser = positive)]
+    pub fps: Option<f64>,
     /// Print at most this many intersections of each state and path; all are counted
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub list: usize,
+    /// Write a table with a row per state and pair of parts
+    #[arg(long, value_name = "FILE.csv")]
+    pub table: Option<PathBuf>,
+    /// Draw the first state that intersects, beside the elements that do
+    #[cfg(feature = "render")]
+    #[arg(long, value_name = "FILE.png")]
+    pub picture: Option<PathBuf>,
     /// Write the triangles and strands that intersect to this file (.ply or .obj), for the first state where
     /// any do
     #[arg(long, value_name = "FILE")]
@@ -393,6 +426,16 @@ impl Up {
             Self::X => "x",
             Self::Y => "y",
             Self::Z => "z",
+        }
+    }
+}
+
+impl From<Up> for bowknot::io::Up {
+    fn from(up: Up) -> Self {
+        match up {
+            Up::X => Self::X,
+            Up::Y => Self::Y,
+            Up::Z => Self::Z,
         }
     }
 }

@@ -2,10 +2,8 @@
 
 use crate::hints::Hint;
 use bowknot::SimulationError;
-use bowknot::check::CheckError;
 use bowknot::io::IoError;
 use std::fmt::Display;
-use std::path::Path;
 
 /// The end of a command that did what was asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,11 +49,6 @@ impl Failure {
             SimulationError::Backend { .. } => Self::backend(message),
             _ => Self::input(message),
         }
-    }
-
-    /// A file that cannot be checked.
-    pub fn check(path: &Path, error: &CheckError) -> Self {
-        Self::input(format!("{}: {error}", path.display()))
     }
 }
 

@@ -18,6 +18,7 @@ mod compute;
 mod device;
 mod drive;
 mod error;
+mod judging;
 mod meshes;
 mod messages;
 mod pictures;
@@ -44,6 +45,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(meshes::read_mesh, module)?)?;
     module.add_function(wrap_pyfunction!(meshes::check_state, module)?)?;
     module.add_function(wrap_pyfunction!(meshes::check_path, module)?)?;
+    module.add_function(wrap_pyfunction!(judging::check_files, module)?)?;
     module.add_function(wrap_pyfunction!(meshes::search, module)?)?;
     module.add_function(wrap_pyfunction!(meshes::repair, module)?)?;
     module.add_function(wrap_pyfunction!(runs::run, module)?)?;

@@ -162,16 +162,20 @@ fn arrays_of<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyDict>> 
     Ok(result)
 }
 
+/// An axis by its name.
+pub fn up_of(name: &str) -> PyResult<Up> {
+    match name {
+        "x" => Ok(Up::X),
+        "y" => Ok(Up::Y),
+        "z" => Ok(Up::Z),
+        other => Err(error::input(format!("up {other:?}: it must be \"x\", \"y\" or \"z\""))),
+    }
+}
+
 /// Reads a mesh file.
 #[pyfunction]
 pub fn read_mesh<'py>(py: Python<'py>, path: PathBuf, up: &str, scale: f64) -> PyResult<Bound<'py, PyDict>> {
-    let up = match up {
-        "x" => Up::X,
-        "y" => Up::Y,
-        "z" => Up::Z,
-        other => return Err(error::input(format!("up {other:?}: it must be \"x\", \"y\" or \"z\""))),
-    };
-    let import = Import { up, scale };
+    let import = Import { up: up_of(up)?, scale };
     import.validate().map_err(error::input)?;
     let read = compute(py, |_| {
         let mut mesh = bowknot::io::read_mesh(&path, &import).map_err(error::input)?;

@@ -3,8 +3,7 @@
 use crate::exit::Failure;
 use crate::failure_dump;
 use crate::interrupt::Interrupt;
-use bowknot::geometry::Point;
-use bowknot::io::Mesh;
+use bowknot::judging::JudgedState;
 use bowknot::recording::{Failure as Shown, States};
 use bowknot::run::SmallestState;
 use bowknot::twoway::Params;
@@ -23,12 +22,15 @@ pub fn write(file: &Path, states: &States) -> Result<String, Failure> {
     }
 }
 
-/// The state of a mesh as a problem that moves nothing. Bodies are numbered anew: any numbers may stand in a
-/// mesh, and obstacles share them with what is none.
-pub fn state_of(mesh: &Mesh, positions: &[Point]) -> States {
+/// A judged mesh as a problem that moves nothing. Bodies are numbered anew: any numbers may stand in a mesh,
+/// and obstacles share them with what is none.
+pub fn state_of(state: &JudgedState<'_>) -> States {
+    let positions = state.positions;
+    let mut mesh = state.mesh.clone();
+    mesh.leave_out(&mesh.absent(positions));
     let count = positions.len();
-    let obstacle = mesh.obstacle.clone().unwrap_or_else(|| vec![false; count]);
-    let body = mesh.body.clone().unwrap_or_else(|| vec![0; count]);
+    let obstacle = mesh.obstacle.unwrap_or_else(|| vec![false; count]);
+    let body = mesh.body.unwrap_or_else(|| vec![0; count]);
     let keys: Vec<(u32, bool)> = body.into_iter().zip(obstacle.iter().copied()).collect();
     let numbers: BTreeSet<(u32, bool)> = keys.iter().copied().collect();
     let numbers: Vec<(u32, bool)> = numbers.into_iter().collect();
@@ -37,9 +39,9 @@ pub fn state_of(mesh: &Mesh, positions: &[Point]) -> States {
         y: positions.to_vec(),
         rest: positions.to_vec(),
         masses: vec![1.0; count],
-        triangles: mesh.triangles.clone(),
-        strands: mesh.strands.clone(),
-        particles: mesh.particles.clone(),
+        triangles: mesh.triangles,
+        strands: mesh.strands,
+        particles: mesh.particles,
         fixed: vec![false; count],
         obstacle,
         body: keys.iter().map(|key| numbers.partition_point(|other| other < key) as u32).collect(),

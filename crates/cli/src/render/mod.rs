@@ -215,7 +215,10 @@ fn write(path: &Path, indexed: bool, picture: &Picture) -> Result<(), Failure> {
 
 /// Writes a file atomically, and its folder if there is none. An error of the encoder is reported as one of
 /// the file.
-fn encode(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<(), RenderError>) -> Result<(), Failure> {
+pub fn encode(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> Result<(), RenderError>,
+) -> Result<(), Failure> {
     let folder: PathBuf = path.parent().unwrap_or(Path::new("")).to_owned();
     if !folder.as_os_str().is_empty() {
         create_folder(&folder)?;

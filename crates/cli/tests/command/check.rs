@@ -164,3 +164,95 @@ fn obstacles_that_are_not_there_are_not_judged() {
         place.run(&format!("check {backend}/frames.npz")).ok();
     }
 }
+
+/// Two objects that pierce each other, beside a third one that pierces itself.
+const OBJECTS: &str = "o left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no right\nv 0.2 0.2 -1\nv 0.3 0.2 1\nv 5 5 0\nf 4 5 6\n\
+                       o knot\nv 20 0 0\nv 21 0 0\nv 20 1 0\nv 20.2 0.2 -0.1\nv 20.3 0.2 1\nv 25 5 0\nf 7 8 9\nf 10 11 12\n";
+
+#[test]
+fn pairs_of_parts_are_counted_and_may_be_exempt() {
+    let place = Place::new();
+    place.write("a.obj", OBJECTS);
+    let report = place.run("check a.obj --json").json();
+    let pair = |index: usize| {
+        let pair = &report["pairs"][index];
+        (pair["parts"].to_string(), pair["states"].as_u64(), pair["most"].as_u64())
+    };
+    assert_eq!(pair(0), ("[\"left\",\"right\"]".to_owned(), Some(1), Some(2)), "{report}");
+    assert_eq!(pair(1), ("[\"knot\",\"knot\"]".to_owned(), Some(1), Some(2)), "{report}");
+    // One edge goes 0.1 deep; the other ends farther from the plane that it crosses.
+    let depth = report["pairs"][1]["depth_m"].as_f64().unwrap();
+    assert!(depth > 0.1 && depth < 1.0, "{report}");
+
+    place.run("check a.obj --may-intersect knot --obstacle right --obstacle l*t").ok();
+    place.run("check a.obj --leave-out knot --leave-out left").ok();
+    let ended = place.run("check a.obj --may-intersect *");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    assert!(ended.stdout.contains("of left") && !ended.stdout.contains("knot"), "{ended:#?}");
+    place.run("check a.obj --obstacle lft").refused(2, &["lft", "left, right, knot"]);
+}
+
+/// A layer that passes through another one between two frames, and lies in it in the next.
+#[test]
+fn frames_of_an_animation_and_the_ways_between_them() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("frames")).unwrap();
+    for (name, gap) in [("1", 0.5), ("2", -0.25), ("3", 0.0)] {
+        place.write(&format!("frames/{name}.obj"), layers(gap));
+    }
+    let report = place.run("check frames --json --table table.csv").json();
+    assert_eq!((&report["intersecting_states"], &report["paths"]), (&1.into(), &0.into()), "{report}");
+    let table = place.read("table.csv");
+    let rows: Vec<&str> = table.lines().collect();
+    assert!(rows.len() == 4 && rows[1].starts_with("frames/1.obj,,,,0,"), "{table}");
+    assert!(rows[3].starts_with("frames/3.obj,,frames,frames,"), "{table}");
+
+    place.write("frames/3.obj", layers(0.5));
+    let ended = place.run("check frames --paths").ok();
+    assert!(ended.stdout.contains("(a hint: straight between the frames)"), "{ended:#?}");
+    assert!(ended.stdout.contains("on the straight way between frames"), "{ended:#?}");
+    let report = place.run("check frames --paths --json").ok().json();
+    assert!(report["hints_between_frames"].as_u64().unwrap() > 0, "{report}");
+    assert_eq!((&report["path_hits"], &report["paths"]), (&0.into(), &2.into()), "{report}");
+}
+
+#[test]
+fn files_that_are_parts_of_one_scene() {
+    let place = Place::new();
+    place.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    place.write("b.obj", "v 0.2 0.2 -1\nv 0.3 0.2 1\nv 5 5 0\nf 1 2 3\n");
+    place.run("check a.obj b.obj").ok();
+    let ended = place.run("check a.obj b.obj --together --json");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    let report = ended.json();
+    assert_eq!(report["pairs"][0]["parts"].to_string(), "[\"a\",\"b\"]", "{report}");
+    // Frames of one beside the other, which stands still.
+    std::fs::create_dir(place.path("moving")).unwrap();
+    for (frame, height) in [(0, 3.0), (1, 2.0), (2, 0.5)] {
+        let moved =
+            format!("v 0.2 0.2 {}\nv 0.3 0.2 {}\nv 5 5 {height}\nf 1 2 3\n", height - 1.0, height + 1.0);
+        place.write(&format!("moving/{frame}.obj"), moved);
+    }
+    let report = place.run("check a.obj moving --together --json").json();
+    assert_eq!((&report["states"], &report["intersecting_states"]), (&3.into(), &1.into()), "{report}");
+    std::fs::create_dir(place.path("short")).unwrap();
+    for frame in 0..2 {
+        place.write(&format!("short/{frame}.obj"), layers(0.5));
+    }
+    place.run("check short moving --together").refused(2, &["moving", "3 frames", "2"]);
+}
+
+#[cfg(feature = "render")]
+#[test]
+fn the_first_state_that_intersects_is_drawn() {
+    let place = Place::new();
+    place.write("a.obj", OBJECTS);
+    let ended = place.run("check a.obj --picture picture.png");
+    if ended.code == 3 {
+        assert!(std::env::var_os("BOWKNOT_NEED_DRIVER").is_none(), "{ended:#?}");
+        return;
+    }
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    assert_eq!(&std::fs::read(place.path("picture.png")).unwrap()[1..4], b"PNG");
+    place.run("check a.obj --picture picture.jpg").refused(2, &["picture.jpg", ".png"]);
+}

@@ -4,6 +4,7 @@ mod cache;
 mod collection;
 mod open;
 mod parts;
+mod together;
 
 use crate::error::{IoError, Place};
 use crate::folder::files_in;

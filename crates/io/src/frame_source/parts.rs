@@ -15,6 +15,23 @@ pub(crate) struct PartsBuilder {
 }
 
 impl PartsBuilder {
+    /// Appends a mesh whose bodies are parts: those that it tells, else one of this name. `None` if there are
+    /// more vertices than indices can count.
+    #[must_use]
+    pub fn add_bodies(&mut self, mut mesh: Mesh, name: String) -> Option<()> {
+        let Some(body) = mesh.body.take() else { return self.add(mesh, name) };
+        let (start, first) = (self.body.len(), self.parts);
+        let count = body.iter().max().map_or(0, |last| last + 1);
+        let mut names = std::mem::take(&mut mesh.names);
+        (names.len()..count as usize).for_each(|number| names.push(format!("{name}, body {number}")));
+        self.add(mesh, name)?;
+        self.body[start..].iter_mut().zip(body).for_each(|(part, body)| *part = first + body);
+        self.mesh.names.truncate(first as usize);
+        self.parts = first + names.len() as u32;
+        self.mesh.names.append(&mut names);
+        Some(())
+    }
+
     /// Appends a part. All its vertices become one body of this name, whatever bodies it tells. `None` if
     /// there are more vertices than indices can count.
     #[must_use]

@@ -20,6 +20,7 @@ from ._errors import (
     InternalError,
     IntersectionError,
 )
+from ._files import FilesReport, check_files
 from ._info import Info, StepInfo
 from ._meshes import Mesh, read_mesh
 from ._pictures import keep_silent, render
@@ -38,6 +39,7 @@ __all__ = [
     "Checkpoint",
     "Contacts",
     "DeviceError",
+    "FilesReport",
     "Info",
     "InputError",
     "InternalError",
@@ -51,6 +53,7 @@ __all__ = [
     "StepInfo",
     "builtin_scenes",
     "check",
+    "check_files",
     "check_path",
     "gpus",
     "read_mesh",

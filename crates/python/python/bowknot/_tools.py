@@ -12,15 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 from . import _arrays, _native
 from ._call import call
 from ._errors import InputError
+from ._files import FilesReport, check_files, count_of
 from ._info import Info
-from ._meshes import Mesh, mesh_of
+from ._meshes import Mesh, is_path, mesh_of
 
 
 class CheckReport(Info):
     """What the judge says. It is true if nothing intersects.
 
-    ``intersection_count`` counts all pairs, ``intersections`` has the first ones with their vertices and place,
-    ``findings`` the same in words; ``min_distance_m`` is the smallest distance [m], None if there is no pair.
+    ``intersection_count`` counts all pairs, ``intersections`` has the first ones with their vertices, place and depth,
+    ``findings`` the same in words; ``body_pairs`` counts them by bodies, with the deepest of each [m];
+    ``min_distance_m`` is the smallest distance [m], None if there is no pair.
     """
 
     __slots__ = ("findings",)
@@ -122,13 +124,14 @@ def check(
     planes: ArrayLike | None = None,
     limit: int = 100,
     distance: bool = True,
-) -> CheckReport:
-    """Judges whether a mesh intersects itself, by exact predicates.
+) -> CheckReport | FilesReport:
+    """Judges whether a mesh, or any frame of a file, intersects itself, by exact predicates.
 
     Parameters
     ----------
     mesh : mesh, path, or array_like of float64, shape (n, 3)
-        A mesh of meshio, trimesh or pyvista, a mesh file, or vertices [m]. Of tetrahedra, the surface is judged.
+        A mesh of meshio, trimesh or pyvista, or vertices [m]. Of tetrahedra, the surface is judged. A path is that of
+        a mesh, an animation or a run, all frames of which are judged; `check_files` has more options.
     faces, edges, particles : array_like of integers, optional
         Triangles (m, 3), edges of strands (k, 2) and particles (p,) of an array of vertices.
     bodies : array_like of integers, shape (n,), optional
@@ -144,13 +147,13 @@ def check(
 
     Returns
     -------
-    CheckReport
+    CheckReport, or FilesReport of a path
         True if nothing intersects.
 
     Raises
     ------
     InputError
-        Shapes, types, elements that do not exist, coordinates that are not finite.
+        Shapes, types, elements that do not exist, coordinates that are not finite; files that cannot be read.
 
     Examples
     --------
@@ -160,9 +163,13 @@ def check(
     >>> bool(report), report.intersection_count
     (False, 2)
     """
+    if is_path(mesh):
+        if any(given is not None for given in (faces, edges, particles, bodies, obstacles, planes)):
+            raise InputError("the file has elements of its own; check_files has the options for files")
+        return check_files(mesh, limit=limit)
     found = mesh_of(mesh, faces, edges=edges, particles=particles)
     given = _given(found, bodies, obstacles, planes)
-    return CheckReport(*call(_native.check_state, found.vertices, given, _count("limit", limit), bool(distance)))
+    return CheckReport(*call(_native.check_state, found.vertices, given, count_of("limit", limit), bool(distance)))
 
 
 def check_path(
@@ -194,7 +201,7 @@ def check_path(
     first = mesh_of(start, faces, edges=edges, particles=particles, name="start")
     last = _arrays.points("end", end, len(first.vertices))
     given = _given(first, bodies, obstacles, planes)
-    return CheckReport(*call(_native.check_path, first.vertices, last, given, _count("limit", limit)))
+    return CheckReport(*call(_native.check_path, first.vertices, last, given, count_of("limit", limit)))
 
 
 def search(
@@ -289,10 +296,3 @@ def repair(
         bool(drop_triangles),
     )
     return Mesh(**arrays), Info(report)
-
-
-def _count(name: str, value: int) -> int:
-    count = int(value)
-    if not 0 <= count < 2**63:
-        raise InputError(f"{name} {value}: it must be a whole number from 0 up")
-    return count

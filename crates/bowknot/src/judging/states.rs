@@ -1,0 +1,257 @@
+//! States and paths judged one after another.
+
+use super::clips::Clip;
+use super::error::JudgingError;
+use super::observer::{JudgedState, JudgingObserver};
+use super::params::JudgingParams;
+use super::parts::{exempt, name_parts};
+use super::report::{FrameVerdict, JudgingReport, PartPairOfFrame};
+use crate::check::{CheckError, Judge, Parts, PathOptions, PathReport, StateOptions};
+use crate::geometry::{BodyFilter, MeshProblem, Point, check_mesh};
+use crate::io::{FrameSource, Mesh};
+use crate::recording::States;
+use bowknot_errors::counted;
+use std::path::Path;
+
+/// Judges states and keeps what was found.
+pub(super) struct StateJudging<'a> {
+    params: &'a JudgingParams,
+    observer: &'a mut dyn JudgingObserver,
+    report: JudgingReport,
+    /// Number of states in all, as far as it is known.
+    total: usize,
+    /// Whether the clip is a trace.
+    is_trace: bool,
+    /// What the clip shows.
+    whole: String,
+    /// The state before in the same clip.
+    previous: Option<PreviousState>,
+}
+
+/// The state that was judged last, with the judge for its elements.
+struct PreviousState {
+    /// The mesh without its positions.
+    elements: Mesh,
+    /// Vertices of obstacles that are not there, see [`Mesh::absent`].
+    absent: Vec<bool>,
+    judge: Judge,
+    positions: Vec<Point>,
+}
+
+/// A state, and what the report calls it.
+struct Named<'a> {
+    file: &'a Path,
+    name: String,
+    time: Option<f64>,
+}
+
+impl<'a> StateJudging<'a> {
+    /// Judges `total` states or more.
+    pub fn new(params: &'a JudgingParams, observer: &'a mut dyn JudgingObserver, total: usize) -> Self {
+        let report = JudgingReport::default();
+        Self { params, observer, report, total, is_trace: false, whole: String::new(), previous: None }
+    }
+
+    /// Begins a clip: no path leads from the one before it.
+    pub fn begin(&mut self, clip: &Clip) {
+        self.is_trace = clip.is_trace;
+        self.whole = clip.name();
+        self.previous = None;
+    }
+
+    /// The verdict on all states.
+    pub fn into_report(self) -> JudgingReport {
+        self.report.finish()
+    }
+
+    /// Judges all frames of a source.
+    pub fn frames(&mut self, source: &FrameSource) -> Result<(), JudgingError> {
+        // The file was counted as one frame.
+        self.total = self.total.max(self.report.states + source.len());
+        for index in 0..source.len() {
+            let file = source.path(index);
+            let name = match source.len() {
+                1 => file.display().to_string(),
+                _ => format!("{}[{index}]", file.display()),
+            };
+            let time = source.times().map(|times| times[index]);
+            let mut mesh = source.read(index)?;
+            // The polygons of a frame have deformed.
+            if mesh.body.is_none()
+                && mesh.obstacle.is_none()
+                && let Some(faults) = mesh.triangulate().describe()
+            {
+                self.observer.warned(&format!("{}: {faults}", file.display()));
+            }
+            self.state(&Named { file, name, time }, mesh.into_surface())?;
+        }
+        Ok(())
+    }
+
+    /// Judges the start of a collision problem, with its half-spaces and collision groups.
+    pub fn problem(&mut self, file: &Path, problem: &States) -> Result<(), JudgingError> {
+        self.previous = None;
+        let model = problem.collision_model().map_err(|message| JudgingError::Content {
+            file: file.to_owned(),
+            message: message.to_string(),
+        })?;
+        let mesh = Mesh {
+            obstacle: Some(problem.obstacle.clone()),
+            body: Some(problem.body.clone()),
+            ..Mesh::default()
+        };
+        let named = Named { file, name: file.display().to_string(), time: None };
+        self.note_problems(&named, &problem.x, &problem.triangles);
+        let judge = Judge::from_model(&model);
+        self.judged(&named, &mesh, &problem.x, &judge, None, Some(problem))
+    }
+
+    /// Judges a state, and the path from the one before if there is one.
+    fn state(&mut self, named: &Named<'_>, mut mesh: Mesh) -> Result<(), JudgingError> {
+        let bad = |source| JudgingError::Check { file: named.file.to_owned(), source };
+        name_parts(&mut mesh, &self.whole);
+        // Names of faces make no other state.
+        mesh.surface = None;
+        let filters = exempt(&mut mesh, self.params);
+        let positions = std::mem::take(&mut mesh.positions);
+        let absent = mesh.absent(&positions);
+        let previous = self.previous.take();
+        let had_previous = previous.is_some();
+        let last = previous.filter(|p| p.positions.len() == positions.len() && p.elements == mesh);
+        if self.is_trace && had_previous && last.is_none() {
+            let message =
+                "its elements differ from those of the file before it, so that there is no path between them";
+            return Err(JudgingError::Content { file: named.file.to_owned(), message: message.to_owned() });
+        }
+        let count = positions.len();
+        if last.is_none() {
+            let mut present = mesh.clone();
+            present.leave_out(&absent);
+            self.note_problems(named, &positions, &present.triangles);
+        }
+        let judge_without = |marked: [&[bool]; 2]| judge_of(&mesh, count, &filters, marked).map_err(bad);
+        let mut path = None;
+        if let Some(last) = last.as_ref().filter(|_| self.is_trace || self.params.paths) {
+            // What appears or vanishes has no path.
+            let common = match last.absent == absent {
+                true => None,
+                false => Some(judge_without([&absent, &last.absent])?),
+            };
+            let judge = common.as_ref().unwrap_or(&last.judge);
+            let limit = if self.is_trace { self.params.listed } else { usize::MAX };
+            let options = PathOptions { limit, ..PathOptions::default() };
+            let mut found = judge.check_path(&last.positions, &positions, &options).map_err(bad)?;
+            if !self.is_trace {
+                // What intersects in the frame before is no news.
+                found.hits.retain(|hit| hit.time > 0.0);
+                found.hit_count = found.hits.len();
+                found.hits.truncate(self.params.listed);
+            }
+            path = Some(found);
+        }
+        let judge = match last {
+            Some(last) if last.absent == absent => last.judge,
+            _ => judge_without([&absent, &[]])?,
+        };
+        self.judged(named, &mesh, &positions, &judge, path.as_ref(), None)?;
+        self.previous = Some(PreviousState { elements: mesh, absent, judge, positions });
+        Ok(())
+    }
+
+    /// Adds the verdict on a state, and that on the `path` to it.
+    fn judged(
+        &mut self,
+        named: &Named<'_>,
+        mesh: &Mesh,
+        positions: &[Point],
+        judge: &Judge,
+        path: Option<&PathReport>,
+        problem: Option<&States>,
+    ) -> Result<(), JudgingError> {
+        let Named { file, name, time } = named;
+        let options = StateOptions { limit: self.params.listed, distance: true };
+        let report = judge
+            .check_state(positions, &options)
+            .map_err(|source| JudgingError::Check { file: (*file).to_owned(), source })?;
+        let names = &mesh.names;
+        let mut findings: Vec<String> = report.intersections.iter().map(|i| i.in_words(names)).collect();
+        findings.extend(more(report.intersection_count, findings.len()));
+        if let (Some(limit), Some(nearest)) = (self.params.min_distance, &report.nearest)
+            && nearest.distance < limit
+        {
+            self.report.too_near = true;
+            if report.is_clear() {
+                findings.push(format!("{}, below {limit:.3e} m", nearest.in_words(names)));
+            }
+        }
+        // Where the frame intersects, it would be no wonder that something meets on the way.
+        if let Some(path) = path.filter(|_| self.is_trace || report.is_clear()) {
+            let hint = if self.is_trace { "" } else { " (a hint: straight between the frames)" };
+            findings.extend(path.hits.iter().map(|hit| hit.in_words(names) + hint));
+            findings.extend(more(path.hit_count, path.hits.len()));
+        }
+        let state = JudgedState { file, name, mesh, positions, judge, report: &report, problem };
+        let goes_on = report.is_clear() || self.observer.intersected(&state);
+        let hits = path.map(|path| path.hit_count);
+        self.report.add(FrameVerdict {
+            file: name.clone(),
+            time_s: *time,
+            intersections: report.intersection_count,
+            path_hits: hits.filter(|_| self.is_trace),
+            hints_between_frames: hits.filter(|_| !self.is_trace),
+            min_distance_m: report.nearest.as_ref().map(|nearest| nearest.distance),
+            pairs: report.body_pairs.iter().map(|pair| PartPairOfFrame::new(pair, names)).collect(),
+            findings,
+        });
+        let done = self.report.states;
+        self.total = self.total.max(done);
+        if goes_on && self.observer.progressed(done, self.total) {
+            Ok(())
+        } else {
+            Err(JudgingError::Interrupted)
+        }
+    }
+
+    /// Warns of triangles that no intersection shows, but that a deformable body may not have.
+    fn note_problems(&mut self, named: &Named<'_>, positions: &[Point], triangles: &[[u32; 3]]) {
+        let problems: Vec<MeshProblem> = check_mesh(positions, triangles)
+            .into_iter()
+            .filter(|p| !matches!(p, MeshProblem::UnreferencedVertex { .. }))
+            .collect();
+        self.report.mesh_problems += problems.len();
+        if let Some(first) = problems.first() {
+            let count = counted(problems.len(), "such triangle", "such triangles");
+            self.observer.warned(&format!(
+                "{}: {first}; {count} in all, which a deformable body may not have: `bowknot info` lists \
+                 them, `bowknot repair` drops them",
+                named.name
+            ));
+        }
+    }
+}
+
+/// A judge of a mesh without the elements of vertices that are marked in either list.
+fn judge_of(
+    mesh: &Mesh,
+    vertex_count: usize,
+    filters: &[BodyFilter],
+    marked: [&[bool]; 2],
+) -> Result<Judge, CheckError> {
+    let mut mesh = mesh.clone();
+    marked.iter().for_each(|marked| mesh.leave_out(marked));
+    Judge::new(&Parts {
+        vertex_count,
+        triangles: &mesh.triangles,
+        strands: &mesh.strands,
+        particles: &mesh.particles,
+        obstacle: mesh.obstacle.as_deref().unwrap_or(&[]),
+        body: mesh.body.as_deref().unwrap_or(&[]),
+        half_spaces: &[],
+        filters,
+    })
+}
+
+/// A line for the intersections that are not listed.
+fn more(count: usize, listed: usize) -> Option<String> {
+    (count > listed).then(|| format!("and {} more", count - listed))
+}
