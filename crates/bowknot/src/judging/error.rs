@@ -2,12 +2,16 @@
 
 use crate::check::CheckError;
 use crate::io::IoError;
+use bowknot_errors::{Errors, ParamError};
 use std::path::PathBuf;
 
 /// Why files could not be judged.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JudgingError {
+    /// Parameters out of their range.
+    #[error("{0}")]
+    Params(Errors<ParamError>),
     /// A file could not be read.
     #[error(transparent)]
     Io(#[from] IoError),

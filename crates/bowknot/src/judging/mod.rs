@@ -18,6 +18,7 @@ pub use observer::{JudgedState, JudgingObserver};
 pub use params::JudgingParams;
 pub use report::{FrameVerdict, JudgingReport, PartPair, PartPairOfFrame};
 
+use bowknot_errors::Parameters;
 use clips::{Clip, Frames};
 use states::StateJudging;
 use std::path::PathBuf;
@@ -28,13 +29,14 @@ use std::path::PathBuf;
 /// them, or the folder of a run. Lengths are in the unit of the files, unless the parameters convert it.
 ///
 /// # Errors
-/// Files that cannot be read, meshes that cannot be judged, names of parts that do not exist, and an observer
+/// Parameters out of their range, files that cannot be read, meshes that cannot be judged, names of parts that do not exist, and an observer
 /// that ends the work.
 pub fn judge_files(
     paths: &[PathBuf],
     params: &JudgingParams,
     observer: &mut dyn JudgingObserver,
 ) -> Result<JudgingReport, JudgingError> {
+    params.validate().map_err(JudgingError::Params)?;
     let clips = Clip::all_of(paths, params)?;
     parts::check_patterns(&clips, params)?;
     let mut judging = StateJudging::new(params, observer, clips.iter().map(Clip::len).sum());

@@ -1,6 +1,7 @@
 //! What is judged, and what is exempt.
 
 use crate::io::FrameOptions;
+use bowknot_errors::{Checks, Parameters};
 
 /// How files are judged. Names of parts may hold `*`, which stands for any characters.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,4 +24,16 @@ pub struct JudgingParams {
     pub min_distance: Option<f64>,
     /// How many intersections of each state and path are described at most; all are counted.
     pub listed: usize,
+}
+
+impl Parameters for JudgingParams {
+    fn check(&self, checks: &mut Checks) {
+        if let Some(distance) = self.min_distance {
+            checks.positive("min_distance", distance);
+        }
+        checks.positive("frames.import.scale", self.frames.import.scale);
+        if let Some(rate) = self.frames.rate {
+            checks.positive("frames.rate", rate);
+        }
+    }
 }

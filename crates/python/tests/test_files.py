@@ -1,0 +1,81 @@
+"""Files judged: frames, parts, exemptions."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import bowknot
+import numpy as np
+import pytest
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+def pierced(height: float) -> str:
+    """A triangle whose lowest corner is at `height`."""
+    return f"v 0.2 0.2 {height}\nv 0.3 0.2 {height + 2}\nv 5 5 {height + 1}\nf 1 2 3\n"
+
+
+@pytest.fixture
+def parts(tmp_path: Path) -> tuple[Path, Path]:
+    """A triangle, and a folder of three frames of one that falls onto it."""
+    still, moving = tmp_path / "still.obj", tmp_path / "moving"
+    still.write_text(TRIANGLE)
+    moving.mkdir()
+    for frame, height in enumerate([2.0, 1.0, -0.25]):
+        (moving / f"{frame}.obj").write_text(pierced(height))
+    return still, moving
+
+
+def test_frames_of_several_files(parts: tuple[Path, Path]) -> None:
+    assert bowknot.check_files(parts)
+    report = bowknot.check_files(parts, together=True, between_frames=True)
+    assert not report and (report.states, report.intersecting_states, report.paths) == (3, 1, 2)
+    (pair,) = report.pairs
+    assert pair["parts"] == ["still", "moving"] and pair["states"] == 1
+    assert pair["depth_m"] > 0.2
+    assert [frame["intersections"] for frame in report.files] == [0, 0, 2]
+    assert report.intersection_count == 2 and len(report.findings) == 2 and "of still" in report.findings[0]
+    assert bowknot.check_files(parts, together=True, leave_out="sti*")
+    assert bowknot.check_files(parts, together=True, obstacles=["still", "moving"])
+    assert not bowknot.check_files(parts, together=True, may_intersect="still")
+
+
+def test_a_path_is_judged_whole(parts: tuple[Path, Path]) -> None:
+    assert bowknot.check(parts[1]).states == 3
+    with pytest.raises(bowknot.InputError, match="check_files"):
+        bowknot.check(parts[0], [[0, 1, 2]])
+
+
+def test_the_command_says_the_same(parts: tuple[Path, Path], command: str) -> None:
+    words = [command, "check", *map(str, parts), "--together", "--paths", "--json"]
+    said = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    assert said.returncode == 1
+    assert json.loads(said.stdout) == dict(bowknot.check_files(parts, together=True, between_frames=True))
+
+
+def test_archives_and_units(tmp_path: Path) -> None:
+    x = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.3, 0.2, 1], [5, 5, 0]], float)
+    apart = x + np.array([0, 0, 10.0]) * (np.arange(6) > 2)[:, None]
+    np.savez(tmp_path / "two.npz", X=[apart, x], F=[[0, 1, 2], [3, 4, 5]])
+    report = bowknot.check_files(tmp_path / "two.npz", scale=0.01)
+    assert [frame["intersections"] > 0 for frame in report.files] == [False, True]
+    assert report.files[0]["min_distance_m"] == pytest.approx(0.09, rel=0.2)
+    assert report.pairs[0]["depth_m"] == pytest.approx(0.01, rel=1e-9)
+
+
+def test_what_is_refused(parts: tuple[Path, Path], tmp_path: Path) -> None:
+    for message, call in {
+        "no part is called \"lid\": the parts are still, moving": lambda: bowknot.check_files(parts, leave_out="lid"),
+        "expected the path": lambda: bowknot.check_files([]),
+        "none.obj": lambda: bowknot.check_files(tmp_path / "none.obj"),
+        "must be .x., .y. or .z.": lambda: bowknot.check_files(parts, up="w"),
+        "scale": lambda: bowknot.check_files(parts, scale=-1.0),
+        "frames.rate": lambda: bowknot.check_files(parts, fps=0.0),
+        "limit": lambda: bowknot.check_files(parts, limit=-1),
+        "min_distance": lambda: bowknot.check_files(parts, min_distance=-1.0),
+    }.items():
+        with pytest.raises(bowknot.InputError, match=message):
+            call()
