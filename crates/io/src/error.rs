@@ -51,6 +51,8 @@ pub enum Place {
     Element(String, usize),
     /// An array of an archive.
     Array(String),
+    /// A prim of a stage or a node of a scene, by its path or name.
+    Prim(String),
 }
 
 impl fmt::Display for Place {
@@ -61,6 +63,7 @@ impl fmt::Display for Place {
             Self::Byte(byte) => write!(f, ": byte {byte}"),
             Self::Element(name, index) => write!(f, ": {name} {index}"),
             Self::Array(name) => write!(f, ": array {name}"),
+            Self::Prim(path) => write!(f, ": {path}"),
         }
     }
 }

@@ -1,8 +1,11 @@
 //! From a file's axes and unit to ours: z up, meters.
 
+use crate::error::{IoError, Place};
+use crate::mesh::Mesh;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// Which axis of a file points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,6 +45,18 @@ impl Import {
             Up::Z => [x, y, z],
         };
         Point::new(self.scale * x, self.scale * y, self.scale * z)
+    }
+
+    /// Converts all points of a mesh that was read from a file.
+    pub(crate) fn convert(&self, mesh: &mut Mesh, path: &Path) -> Result<(), IoError> {
+        for (vertex, point) in mesh.positions.iter_mut().enumerate() {
+            *point = self.point([point.x, point.y, point.z]);
+            if !point.iter().all(|c| c.is_finite()) {
+                let message = format!("a coordinate overflows when scaled by {}", self.scale);
+                return Err(IoError::content(path, Place::Element("vertex".to_owned(), vertex), message));
+            }
+        }
+        Ok(())
     }
 }
 

@@ -24,6 +24,7 @@ mod ply;
 mod read;
 mod surface;
 mod tet_list;
+mod transform;
 mod usd;
 mod vtu;
 

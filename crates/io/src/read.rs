@@ -1,6 +1,7 @@
 //! Meshes of any format, told apart by the ending of the file's name.
 
 use crate::error::{IoError, Place};
+use crate::frame_source::read_still;
 use crate::import::Import;
 use crate::mesh::Mesh;
 use crate::msh::read_msh;
@@ -10,7 +11,7 @@ use crate::tet_list::read_tet_list;
 use std::path::Path;
 
 /// Endings of the files that [`read_mesh`] reads, in lower case.
-pub const MESH_ENDINGS: [&str; 5] = ["obj", "ply", "msh", "t", "seg"];
+pub const MESH_ENDINGS: [&str; 6] = ["obj", "ply", "msh", "t", "seg", "usda"];
 
 /// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (`.t`),
 /// strand segments (`.seg`).
@@ -26,6 +27,7 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         "msh" => read_msh(path, import),
         "t" => read_tet_list(path, import),
         "seg" => read_segments(path, import),
+        "usda" => read_still(path, import),
         _ => {
             let endings = MESH_ENDINGS.map(|ending| format!(".{ending}")).join(", ");
             Err(IoError::content(path, Place::File, format!("not a mesh: only {endings} files are read")))

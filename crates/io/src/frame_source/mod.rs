@@ -6,7 +6,7 @@ mod open;
 mod parts;
 mod together;
 
-use crate::error::{IoError, Place};
+use crate::error::IoError;
 use crate::folder::files_in;
 use crate::import::Import;
 use crate::mesh::Mesh;
@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub use open::FrameOptions;
+pub(crate) use open::{frame_times, read_still};
 pub(crate) use parts::PartsBuilder;
 
 /// Endings of frames that are files of their own, the preferred one first; `vtu` if it is read.
@@ -170,14 +171,7 @@ impl FrameSource {
             Store::Archive(_, stack) => stack.frame_mesh(index),
             Store::Animation(animation) => animation.read(index)?,
         };
-        for (vertex, point) in mesh.positions.iter_mut().enumerate() {
-            *point = self.import.point([point.x, point.y, point.z]);
-            if !point.iter().all(|c| c.is_finite()) {
-                let message = format!("a coordinate overflows when scaled by {}", self.import.scale);
-                let place = Place::Element("vertex".to_owned(), vertex);
-                return Err(IoError::content(self.path(index), place, message));
-            }
-        }
+        self.import.convert(&mut mesh, self.path(index))?;
         Ok(mesh)
     }
 }

@@ -5,7 +5,9 @@ use super::collection::Collection;
 use super::{FrameSource, Store};
 use crate::error::{IoError, Place};
 use crate::import::Import;
+use crate::mesh::Mesh;
 use crate::read::MESH_ENDINGS;
+use crate::usd::Stage;
 use bowknot_errors::Parameters;
 use std::path::Path;
 
@@ -14,8 +16,8 @@ use std::path::Path;
 pub struct FrameOptions {
     /// From the axes and the unit of the files to ours. By default they stay as they are.
     pub import: Import,
-    /// Frames per second of a file that knows motion but no frames [1/s], as glTF; none: those at the times
-    /// of its keys.
+    /// Frames per second of a file that knows motion but no frames [1/s], a USD stage or a glTF scene; none:
+    /// frames at the times of its samples or keys, each once.
     pub rate: Option<f64>,
 }
 
@@ -32,6 +34,7 @@ impl FrameSource {
     ///
     /// - a mesh of any format that [`read_mesh`](crate::read_mesh) reads: one frame;
     /// - a point cache `NAME.pc2`, with its mesh `NAME.obj` or `NAME.ply` beside it;
+    /// - a USD stage `.usda`, each mesh, set of curves or points a part;
     /// - a collection `.pvd` of VTK files with their times;
     /// - an archive `.npz`;
     /// - a folder of meshes of one ending (PLY, else OBJ, else VTU, else another), or of point caches; the
@@ -48,16 +51,29 @@ impl FrameSource {
             return Err(fault("the number of frames per second must be finite and above 0".to_owned()));
         }
         let metadata = std::fs::metadata(path).map_err(|error| IoError::system("read", path, error))?;
-        let source = if metadata.is_dir() { of_folder(path)? } else { of_file(path)? };
+        let source = if metadata.is_dir() { of_folder(path)? } else { of_file(path, options)? };
         Ok(Self { import: options.import, ..source })
     }
 }
 
-fn of_file(path: &Path) -> Result<FrameSource, IoError> {
+/// The mesh of a stage or scene where nothing moves.
+///
+/// # Errors
+/// As [`FrameSource::open_with`].
+pub(crate) fn read_still(path: &Path, import: &Import) -> Result<Mesh, IoError> {
+    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
+    let options = FrameOptions { import: *import, rate: None };
+    let mut mesh = Stage::open(path, &options)?.into_mesh();
+    import.convert(&mut mesh, path)?;
+    Ok(mesh)
+}
+
+fn of_file(path: &Path, options: &FrameOptions) -> Result<FrameSource, IoError> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     match ending.as_str() {
         "npz" => of_archive(path),
         "pc2" => PointCaches::open(&[path.to_owned()]).map(FrameSource::of_animation),
+        "usda" => Stage::open(path, options).map(FrameSource::of_animation),
         "pvd" => Collection::open(path).map(FrameSource::of_animation),
         _ => Ok(FrameSource { store: Store::Files(vec![path.to_owned()]), import: Import::default() }),
     }
@@ -103,4 +119,13 @@ fn of_archive(path: &Path) -> Result<FrameSource, IoError> {
 fn of_archive(path: &Path) -> Result<FrameSource, IoError> {
     let message = "archives are not read: this build has no feature npz";
     Err(IoError::content(path, Place::File, message))
+}
+
+/// Times of frames of an animation with these key times, ascending: the keys, or so many per second from the
+/// first to the last.
+pub(crate) fn frame_times(keys: &[f64], rate: Option<f64>) -> Vec<f64> {
+    let (Some(rate), [first, .., last]) = (rate, keys) else { return keys.to_vec() };
+    // Rounding must not lose the last frame.
+    let count = ((last - first) * rate * (1.0 + 1e-9)).floor();
+    (0..).map(f64::from).take_while(|k: &f64| *k <= count).map(|k| first + k / rate).collect()
 }

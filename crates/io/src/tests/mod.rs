@@ -8,6 +8,7 @@ mod ply;
 mod polygons;
 mod robust;
 mod sources;
+mod stages;
 mod surface;
 
 use super::*;

@@ -14,7 +14,7 @@ fn triangle(frame: usize) -> Vec<Point> {
 fn cached(folder: &TempDir, name: &str) -> PathBuf {
     let cache = folder.path().join(format!("{name}.pc2"));
     for frame in 0..3 {
-        write_pc2_frame(&cache, frame, &triangle(frame)).unwrap();
+        write_pc2_frame(&cache, frame, &triangle(frame)).expect("a writable folder");
     }
     write(folder, &format!("{name}.obj"), "v 0 0 0\nv 1 0 0\nv 2 1 0\nf 1 2 3\n");
     cache

@@ -7,7 +7,10 @@
 mod attributes;
 mod chains;
 mod names;
+mod read;
 mod text;
+
+pub(crate) use read::Stage;
 
 use crate::atomic::write_atomic;
 use crate::error::IoError;
@@ -17,7 +20,7 @@ use attributes::Materials;
 use bowknot_geometry::Point;
 use std::io::Write;
 use std::path::Path;
-use text::{write_list, write_point};
+use text::{quoted, write_list, write_point};
 
 /// A body of a stage.
 #[derive(Clone, Copy, Debug)]
@@ -105,6 +108,8 @@ enum PrimKind {
 struct Prim<'a> {
     kind: PrimKind,
     name: String,
+    /// Whether it is the first of its body.
+    is_first: bool,
     /// The body's vertices that are its points, in this order.
     vertices: Vec<u32>,
     /// Of a mesh the vertices of each face, of curves those of each curve.
@@ -129,6 +134,7 @@ impl<'a> Prim<'a> {
             prims.push(Self {
                 kind: PrimKind::Mesh,
                 name: name.to_owned(),
+                is_first: true,
                 vertices,
                 counts,
                 indices,
@@ -140,6 +146,7 @@ impl<'a> Prim<'a> {
             prims.push(Self {
                 kind: PrimKind::BasisCurves,
                 name: if prims.is_empty() { name.to_owned() } else { format!("{name}_strands") },
+                is_first: prims.is_empty(),
                 counts: chains.iter().map(Vec::len).collect(),
                 vertices: chains.concat(),
                 indices: Vec::new(),
@@ -150,6 +157,7 @@ impl<'a> Prim<'a> {
             prims.push(Self {
                 kind: PrimKind::Points,
                 name: if prims.is_empty() { name.to_owned() } else { format!("{name}_particles") },
+                is_first: prims.is_empty(),
                 vertices: elements.particles.to_vec(),
                 counts: Vec::new(),
                 indices: Vec::new(),
@@ -161,7 +169,12 @@ impl<'a> Prim<'a> {
 
     /// All that does not move.
     fn begin(&self, out: &mut impl Write, body: &UsdBody<'_>) -> std::io::Result<()> {
-        write!(out, "    def {:?} \"{}\"\n    {{\n", self.kind, self.name)?;
+        // The strands and particles of a body have names of their own.
+        let label = match body.name != self.name && self.is_first {
+            true => format!(" (\n        displayName = {}\n    )", quoted(body.name)),
+            false => String::new(),
+        };
+        write!(out, "    def {:?} \"{}\"{label}\n    {{\n", self.kind, self.name)?;
         match self.kind {
             PrimKind::Mesh => {
                 out.write_all(b"        uniform bool doubleSided = 1\n")?;
@@ -187,6 +200,7 @@ impl<'a> Prim<'a> {
                 write_list(out, "float[] widths", vec![body.width as f32; self.vertices.len()])?
             }
         }
+        writeln!(out, "        custom bool {} = {}", read::OBSTACLE, u8::from(body.obstacle))?;
         let color = if body.obstacle { "(0.6, 0.6, 0.62)" } else { "(0.75, 0.35, 0.25)" };
         writeln!(out, "        color3f[] primvars:displayColor = [{color}]")
     }
