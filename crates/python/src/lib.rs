@@ -15,6 +15,7 @@
 
 mod arrays;
 mod compute;
+mod contacts;
 mod device;
 mod drive;
 mod error;

@@ -2,15 +2,18 @@
 
 use crate::arrays::{self, Indices, Rows};
 use crate::compute::compute;
+use crate::contacts;
 use crate::error;
 use bowknot::check::{Judge, StateOptions};
 use bowknot::geometry::Point;
 use bowknot::recording::States;
+use bowknot::simulator::Contact;
 use bowknot::twoway::{AcceptedState, BodyContact, HalfSpaceContact, Observer, ResolveInput, Statistics};
 use bowknot_errors::counted;
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyBaseException;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -178,6 +181,17 @@ impl Resolver {
         let info = serde_json::to_string(&statistics).map_err(error::internal)?;
         let signal = done.signal.map(|signal| signal.into_value(py));
         Ok((arrays::point_array(py, &x)?, info, signal))
+    }
+
+    /// The contacts that press at the end of the last call, which stood for a time step [s].
+    fn contacts<'py>(&self, py: Python<'py>, time_step: f64) -> PyResult<Bound<'py, PyDict>> {
+        if !(time_step.is_finite() && time_step > 0.0) {
+            return Err(error::input(format!("dt {time_step} must be finite and above 0")));
+        }
+        let guard = self.inner.try_lock().map_err(|_| error::busy("resolver"))?;
+        let inner = guard.as_ref().ok_or_else(|| error::broken("resolver"))?;
+        let bodies = inner.resolver.scene().model().bodies().len();
+        contacts::arrays_of(py, &Contact::of_call(&inner.resolver, time_step), bodies)
     }
 
     /// The lengths in force [m], by name.

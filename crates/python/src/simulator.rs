@@ -2,6 +2,7 @@
 
 use crate::arrays::{self, Rows};
 use crate::compute::compute;
+use crate::contacts;
 use crate::device;
 use crate::drive;
 use crate::error;
@@ -10,7 +11,6 @@ use bowknot::SimulationError;
 use bowknot::check::StateOptions;
 use bowknot::geometry::Point;
 use bowknot::simulator::{AcceptedStep, CollisionProblem, SimulationObserver, describe_intersections};
-use bowknot::twoway::ContactSide;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -228,30 +228,7 @@ impl Simulator {
 
     /// The contacts that carried a force at the end of the last time step.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.read(|simulator| {
-            let contacts = simulator.contacts();
-            let bodies = simulator.world().bodies.len() as u32;
-            let side = |side: ContactSide| match side {
-                ContactSide::Body(body) => body,
-                ContactSide::HalfSpace(plane) => bodies + plane,
-            };
-            let all = contacts.iter();
-            let found = PyDict::new(py);
-            found.set_item("bodies", arrays::row_array(py, all.clone().map(|c| c.sides.map(side)))?)?;
-            found.set_item("vertices", arrays::row_array(py, all.clone().map(|c| c.vertices))?)?;
-            found.set_item("weights", arrays::row_array(py, all.clone().map(|c| c.weights))?)?;
-            let first = all.clone().map(|c| <[f64; 3]>::from(c.points[0].coords));
-            let second = all.clone().map(|c| <[f64; 3]>::from(c.points[1].coords));
-            found.set_item("points_a", arrays::row_array(py, first)?)?;
-            found.set_item("points_b", arrays::row_array(py, second)?)?;
-            found.set_item(
-                "normals",
-                arrays::row_array(py, all.clone().map(|c| <[f64; 3]>::from(c.normal)))?,
-            )?;
-            found.set_item("gaps", arrays::list(py, all.clone().map(|c| c.gap)))?;
-            found.set_item("forces", arrays::row_array(py, all.map(|c| <[f64; 3]>::from(c.force)))?)?;
-            Ok(found)
-        })
+        self.read(|simulator| contacts::arrays_of(py, &simulator.contacts(), simulator.world().bodies.len()))
     }
 
     /// Force and torque that all contacts exert on a body.

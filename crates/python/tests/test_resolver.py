@@ -180,3 +180,38 @@ def test_two_threads_do_not_share_a_resolver():
         thread.join()
     assert len(results) == 4 and any(isinstance(result, int) for result in results)
     assert all(isinstance(result, int) or "another thread" in result for result in results)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_contact_forces_hold_what_lies_and_brake_what_slides(friction):
+    """A sheet on the ground under gravity: its weight, Newton's third law, Coulomb's law."""
+    x, faces = grid(12, size=0.3, height=0.002)
+    mass, dt = 0.01, 0.01
+    weight = mass * len(x) * 9.81
+    resolver = Resolver(
+        x, faces, planes=[[0, 0, 1, 0]], masses=mass, friction=friction, stretch_limit=np.inf, delta=0.003
+    )
+    velocity = np.tile([2.0, 0.0, 0.0], (len(x), 1))
+    for _ in range(20):
+        velocity[:, 2] -= 9.81 * dt
+        y = x + dt * velocity
+        new, info = resolver.resolve(x, y, dt=dt)
+        before = velocity[:, 0].mean()
+        velocity, x = (new - x) / dt, new
+    contacts = resolver.contacts(dt)
+    assert info.converged and len(contacts) > 0
+    assert contacts.bodies.tolist() == [[0, 1]] * len(contacts)
+    force, torque = contacts.wrench(0)
+    assert force[2] == pytest.approx(weight, rel=0.03)
+    # The forces are what moved the sheet away from its target.
+    total = mass * (new - y).sum(axis=0) / dt**2
+    np.testing.assert_allclose(force, total, atol=0.01 * weight)
+    slowed = mass * len(x) * (velocity[:, 0].mean() - before) / dt
+    assert force[0] == pytest.approx(-friction * weight, abs=0.03 * weight)
+    assert slowed == pytest.approx(force[0], abs=0.01 * weight)
+    on_ground, _ = contacts.wrench(1)
+    np.testing.assert_allclose(on_ground, -force)
+    lever = np.cross(contacts.points_a, contacts.forces).sum(axis=0)
+    np.testing.assert_allclose(torque, lever)
+    with pytest.raises(InputError, match="dt 0"):
+        resolver.contacts(0.0)

@@ -2,9 +2,10 @@
 
 use crate::call::CallInput;
 use crate::error::ResolveError;
+use crate::multipliers::PairMultipliers;
 use crate::scene::CollisionScene;
 use crate::validation::check_rows;
-use bowknot_geometry::{Point, Separation, Vector};
+use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_proximity::PairList;
 use bowknot_stepper::Contacts;
 
@@ -60,6 +61,18 @@ impl ContactSet {
             separations: &self.separations,
             min_separations: &self.min_separations,
         }
+    }
+
+    /// What the pairs carry that press, with their contact geometry.
+    pub fn pressing(&self) -> impl Iterator<Item = (PairMultipliers, &Separation)> {
+        let of_kind = |kind: PairKind| self.pairs.range(kind).map(move |place| (kind, place));
+        PairKind::ALL.into_iter().flat_map(of_kind).filter(|(_, place)| self.multipliers[*place] != 0.0).map(
+            |(kind, place)| {
+                let friction = self.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
+                let (elements, normal) = (self.pairs.pairs()[place].elements, self.multipliers[place]);
+                (PairMultipliers { kind, elements, normal, friction }, &self.separations[place])
+            },
+        )
     }
 
     /// Whether any contact presses.

@@ -12,6 +12,7 @@ to the logger ``bowknot``.
 from __future__ import annotations
 
 from . import _native
+from ._contacts import Contacts
 from ._errors import (
     ArrayTypeError,
     BowknotError,
@@ -27,7 +28,7 @@ from ._pictures import keep_silent, render
 from ._resolver import Resolver
 from ._runs import Run, report, run
 from ._scene import Scene, builtin_scenes
-from ._simulator import Checkpoint, Contacts, Simulator
+from ._simulator import Checkpoint, Simulator
 from ._tools import CheckReport, Pairs, check, check_path, repair, search
 
 __version__: str = _native.__version__

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _native, _toml
 from ._call import call
+from ._contacts import Contacts, contacts_of
 from ._errors import InputError
 from ._info import Info
 from ._meshes import mesh_of
@@ -290,6 +291,20 @@ class Resolver:
         if not isinstance(x, np.ndarray):
             raise InputError(f"x: expected an ndarray to move in place, got {type(x).__name__}")
         return self.resolve(x, y, out=x, **options)[1]
+
+    def contacts(self, dt: float) -> Contacts:
+        """The contacts that press at the end of the last call, which stood for a time step ``dt`` [s].
+
+        Their forces are what, beside those of your dynamics, leads to where the call ended. A call that has not
+        converged, or that ``start=`` splits into several, tells less than that. Stretch limits pull as well, which is
+        not among them. There are none under ``friction_model="filter"``.
+
+        Raises
+        ------
+        InputError
+            A time step that is not above 0.
+        """
+        return contacts_of(call(self._native.contacts, float(dt)))
 
     def __repr__(self) -> str:
         return f"Resolver({self._count} vertices)"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,49 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _native, _pictures, _toml
 from ._call import call
+from ._contacts import Contacts, contacts_of
 from ._errors import InputError
+from ._files import count_of
 from ._info import StepInfo
 from ._scene import Scene, _entry
-from ._tools import CheckReport, _count
-
-
-@dataclass(frozen=True, eq=False)
-class Contacts:
-    """Contacts that carry a force, one per row.
-
-    Attributes
-    ----------
-    bodies : ndarray of uint32, shape (k, 2)
-        The two sides, by their place in `Simulator.names`.
-    vertices : ndarray of uint32, shape (k, 4)
-        The vertices of both sides, those of the first side first; if there are fewer than four, the first again.
-    weights : ndarray of float64, shape (k, 4)
-        Weights of the closest points in the vertices [1]: positive on the first side, negative on the second, 0 where
-        there is no further vertex.
-    points_a, points_b : ndarray of float64, shape (k, 3)
-        The closest points of the first and the second side [m].
-    normals : ndarray of float64, shape (k, 3)
-        Unit normals, toward the first side [1].
-    gaps : ndarray of float64, shape (k,)
-        Distances of the closest points along the normals [m].
-    forces : ndarray of float64, shape (k, 3)
-        Forces on the first side [N]; those on the second are opposite.
-    """
-
-    bodies: NDArray[np.uint32]
-    vertices: NDArray[np.uint32]
-    weights: NDArray[np.float64]
-    points_a: NDArray[np.float64]
-    points_b: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    gaps: NDArray[np.float64]
-    forces: NDArray[np.float64]
-
-    def __len__(self) -> int:
-        return len(self.gaps)
-
-    def __repr__(self) -> str:
-        return f"Contacts({len(self)})"
+from ._tools import CheckReport
 
 
 class Checkpoint:
@@ -344,13 +306,13 @@ class Simulator:
         CheckReport
             True, as no state of a simulation intersects.
         """
-        return CheckReport(*call(self._native.check, _count("limit", limit), bool(distance)))
+        return CheckReport(*call(self._native.check, count_of("limit", limit), bool(distance)))
 
     # Forces
 
     def contacts(self) -> Contacts:
         """The contacts that carried a force at the end of the last time step."""
-        return Contacts(**{k: _arrays.read_only(v) for k, v in call(self._native.contacts).items()})
+        return contacts_of(call(self._native.contacts))
 
     def contact_wrench(
         self, name: str, about: ArrayLike = (0.0, 0.0, 0.0)

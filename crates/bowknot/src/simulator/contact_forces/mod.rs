@@ -14,3 +14,4 @@ pub use contacts::CarriedContacts;
 pub(crate) use contacts::Contacts;
 pub use friction::ContactForce;
 pub(crate) use friction::vertices_of;
+pub(super) use row_forces::features;

@@ -58,9 +58,11 @@ impl RowForces {
     pub fn forces(&self, resolver: &Resolver, solved: &[bool]) -> Vec<ContactForce> {
         let force = |(pair, normal): (PairMultipliers, Vector)| {
             let force = (normal * pair.normal + pair.friction) * self.scale;
-            Some(ContactForce { features: features(pair.kind, pair.elements)?, normal, force })
+            ContactForce { features: features(pair.kind, pair.elements), normal, force }
         };
-        pressing(resolver, solved).filter_map(force).collect()
+        // Those of two edges are not carried: grains have none.
+        let of_grains = |(pair, _): &(PairMultipliers, Vector)| pair.kind != PairKind::EdgeEdge;
+        pressing(resolver, solved).filter(of_grains).map(force).collect()
     }
 }
 
@@ -73,29 +75,23 @@ fn pressing<'a>(
     resolver: &'a Resolver,
     solved: &'a [bool],
 ) -> impl Iterator<Item = (PairMultipliers, Vector)> + 'a {
-    let contacts = &resolver.state().contacts;
-    let of_kind = |kind: PairKind| contacts.pairs.range(kind).map(move |place| (kind, place));
-    PairKind::ALL.into_iter().flat_map(of_kind).filter_map(move |(kind, place)| {
-        let (pair, normal) = (&contacts.pairs.pairs()[place], contacts.multipliers[place]);
-        if normal == 0.0 || pair.vertices[..kind.vertex_count()].iter().any(|&v| solved[v as usize]) {
-            return None;
-        }
-        let friction = contacts.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
-        let carried = PairMultipliers { kind, elements: pair.elements, normal, friction };
-        Some((carried, contacts.separations[place].normal))
+    let topology = resolver.scene().model().topology();
+    resolver.state().contacts.pressing().filter_map(move |(pair, separation)| {
+        let features = features(pair.kind, pair.elements);
+        let mut used = features.iter().flat_map(|feature| vertices_of(topology, feature));
+        used.all(|&v| !solved[v as usize]).then_some((pair, separation.normal))
     })
 }
 
-/// The elements of a pair of a vertex, and what it touches.
-fn features(kind: PairKind, [a, b]: [u32; 2]) -> Option<[Feature; 2]> {
-    let other = match kind {
-        PairKind::VertexVertex => Feature::Vertex(b),
-        PairKind::VertexEdge => Feature::Edge(b),
-        PairKind::VertexTriangle => Feature::Triangle(b),
-        PairKind::VertexHalfSpace => Feature::HalfSpace(b),
-        PairKind::EdgeEdge => return None,
-    };
-    Some([Feature::Vertex(a), other])
+/// The elements of a pair.
+pub fn features(kind: PairKind, [a, b]: [u32; 2]) -> [Feature; 2] {
+    match kind {
+        PairKind::VertexVertex => [Feature::Vertex(a), Feature::Vertex(b)],
+        PairKind::VertexEdge => [Feature::Vertex(a), Feature::Edge(b)],
+        PairKind::VertexTriangle => [Feature::Vertex(a), Feature::Triangle(b)],
+        PairKind::VertexHalfSpace => [Feature::Vertex(a), Feature::HalfSpace(b)],
+        PairKind::EdgeEdge => [Feature::Edge(a), Feature::Edge(b)],
+    }
 }
 
 /// The pair of such features.

@@ -14,7 +14,11 @@ impl Simulator {
     /// or friction by the velocity filter) it holds those of grains with obstacles and with each other only.
     pub fn contacts(&self) -> Vec<Contact> {
         let carried = self.carried();
-        carried.forces.iter().filter_map(|force| Contact::new(&self.world, &self.positions, force)).collect()
+        carried
+            .forces
+            .iter()
+            .filter_map(|force| Contact::new(&self.world.collision, &self.positions, force))
+            .collect()
     }
 
     /// What all [contacts](Self::contacts) exert on a body, an obstacle or a half-space, with the torque

@@ -1,10 +1,9 @@
 //! What presses on what at the end of a time step: contacts one by one, and what they add up to.
 
-use crate::simulator::contact_forces::{ContactForce, vertices_of};
+use crate::simulator::contact_forces::{ContactForce, features, vertices_of};
 use bowknot_constraints::Feature;
-use bowknot_geometry::{Closest, PairKind, Point, Vector, distance};
-use bowknot_scene::world::World;
-use bowknot_twoway::ContactSide;
+use bowknot_geometry::{Closest, CollisionModel, PairKind, Point, Separation, Vector, distance};
+use bowknot_twoway::{ContactSide, PairMultipliers, Resolver};
 use serde::{Deserialize, Serialize};
 
 /// A contact that carries a force.
@@ -39,10 +38,27 @@ impl Contact {
         self.force - self.normal * self.normal_force()
     }
 
+    /// The contacts that press at the end of a call of the collision stage by itself, as the bodies and the
+    /// masses of its scene count them. The call stands for a time step of `time_step` [s] from its start to its
+    /// target: the forces are those that, beside those of the dynamics, lead to where the call ended. They are
+    /// as accurate as the call, see [`Statistics::converged`](bowknot_twoway::Statistics::converged); forces of
+    /// stretch limits are not among them. There are none under the velocity filter.
+    pub fn of_call(resolver: &Resolver, time_step: f64) -> Vec<Self> {
+        let (scene, state) = (resolver.scene(), resolver.state());
+        let scale = scene.mean_mass() / (time_step * time_step);
+        let contact = |(pair, separation): (PairMultipliers, &Separation)| {
+            let normal = separation.normal;
+            let force = (normal * pair.normal + pair.friction) * scale;
+            let carried = ContactForce { features: features(pair.kind, pair.elements), normal, force };
+            Self::new(scene.model(), &state.x, &carried)
+        };
+        state.contacts.pressing().filter_map(contact).collect()
+    }
+
     /// A contact at positions of all vertices [m]; none of features that do not exist.
-    pub(crate) fn new(world: &World, positions: &[Point], carried: &ContactForce) -> Option<Self> {
+    pub(crate) fn new(model: &CollisionModel, positions: &[Point], carried: &ContactForce) -> Option<Self> {
         let ContactForce { features, normal, force } = *carried;
-        let topology = world.collision.topology();
+        let topology = model.topology();
         let [a, b] = [&features[0], &features[1]].map(|feature| vertices_of(topology, feature));
         let kind = match (a.len(), b.len(), features[1]) {
             (1, 0, Feature::HalfSpace(_)) => PairKind::VertexHalfSpace,
@@ -63,12 +79,12 @@ impl Contact {
         let on_first = sum(0..a.len());
         let on_second = match features[1] {
             Feature::HalfSpace(h) => {
-                let plane = world.collision.half_spaces().get(h as usize)?;
+                let plane = model.half_spaces().get(h as usize)?;
                 on_first - plane.normal * plane.signed_distance(&on_first)
             }
             _ => sum(a.len()..a.len() + b.len()),
         };
-        let body = |vertices: &[u32]| Some(*world.collision.vertex_body().get(*vertices.first()? as usize)?);
+        let body = |vertices: &[u32]| Some(*model.vertex_body().get(*vertices.first()? as usize)?);
         let side = |feature: Feature, vertices: &[u32]| match feature {
             Feature::HalfSpace(h) => Some(ContactSide::HalfSpace(h)),
             _ => body(vertices).map(ContactSide::Body),
