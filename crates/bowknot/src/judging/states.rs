@@ -70,9 +70,10 @@ impl<'a> StateJudging<'a> {
         self.total = self.total.max(self.report.states + source.len());
         for index in 0..source.len() {
             let file = source.path(index);
-            let name = match source.len() {
-                1 => file.display().to_string(),
-                _ => format!("{}[{index}]", file.display()),
+            let is_own_file = source.len() == 1 || source.path(0) != source.path(1);
+            let name = match is_own_file {
+                true => file.display().to_string(),
+                false => format!("{}[{index}]", file.display()),
             };
             let time = source.times().map(|times| times[index]);
             let mut mesh = source.read(index)?;
