@@ -10,7 +10,7 @@ from conftest import ROOT
 
 import bowknot
 
-DOCUMENTS = [ROOT / "docs" / "python.md", ROOT / "crates" / "python" / "README.md"]
+DOCUMENTS = [ROOT / "docs" / "python.md", ROOT / "docs" / "cluster.md", ROOT / "crates" / "python" / "README.md"]
 
 
 def blocks(path):

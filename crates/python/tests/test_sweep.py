@@ -215,6 +215,12 @@ def test_workers_that_cannot_start_are_said_at_once(tmp_path, monkeypatch):
         sweep({**SMALL, "grid": {"body.sheet.friction": [0.1, 0.2, 0.3]}}, tmp_path)
 
 
+def test_workers_that_are_killed_at_their_start_are_lost(tmp_path, monkeypatch):
+    monkeypatch.setattr(_local, "_PROGRAM", "import os; os.kill(os.getpid(), 9)")
+    rows = sweep({**SMALL, "grid": {"body.sheet.friction": [0.1, 0.2, 0.3]}}, tmp_path).rows
+    assert all(row["reason"].startswith("lost 3 times: the worker was ended by SIGKILL") for row in rows)
+
+
 def test_a_run_has_a_time_limit(tmp_path):
     study = {**SMALL, "set": {"simulation.frames": 100000}, "time_limit": 0.5}
     row = sweep(study, tmp_path).rows[0]

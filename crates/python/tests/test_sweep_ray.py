@@ -52,6 +52,6 @@ def test_a_node_that_is_killed_changes_nothing(cluster, tmp_path):
 
 
 def test_a_cluster_that_is_not_there_is_refused(tmp_path):
-    with pytest.raises(InputError, match="no Ray cluster at 127.0.0.1:1"):
+    with pytest.raises(InputError, match="127.0.0.1:1.: no Ray cluster"):
         sweep(LONG, tmp_path, backend="ray", address="127.0.0.1:1")
     assert os.listdir(tmp_path) == [] and bowknot.threads() > 0

@@ -134,18 +134,24 @@ def sweep(
 
     tell = progress if callable(progress) else Printer() if progress else lambda _: None
     outcomes: dict[str, dict[str, Any]] = {}
-    rows: list[dict[str, Any]] = []
-    try:
-        drive(read, planned, results, pool, part, tell, outcomes)
-    finally:
-        # Of a sweep that is interrupted too: its rows say what is left.
-        for index, case in enumerate(planned.cases):
-            if not part or case.run in outcomes:
-                outcome = outcomes.get(case.run, _PENDING)
-                rows.append(_table.row(index, case.values, case.run, place(case.run), outcome))
+
+    def finish() -> SweepResult:
+        rows = [
+            _table.row(index, case.values, case.run, place(case.run), outcomes.get(case.run, _PENDING))
+            for index, case in enumerate(planned.cases)
+            if not part or case.run in outcomes
+        ]
         if not part:
             results.write(read.table, _table.content(read.table, rows, planned.keys))
-    return SweepResult(read.out, "" if part else results.path(read.table), rows)
+        return SweepResult(read.out, "" if part else results.path(read.table), rows)
+
+    try:
+        drive(read, planned, results, pool, part, tell, outcomes)
+    except KeyboardInterrupt:
+        # The table says what is left.
+        finish()
+        raise
+    return finish()
 
 
 #: The outcome of a run that was not made.

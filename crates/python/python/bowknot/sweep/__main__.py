@@ -19,13 +19,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("study", help="study file, TOML")
     parser.add_argument("--out", help="folder or URL of the results; default: that of the study")
     parser.add_argument("--workers", type=int, help="runs at once; default: as many as there are cores for")
-    parser.add_argument(
-        "--ray",
-        nargs="?",
-        const="",
-        metavar="ADDRESS",
-        help="make the runs on a Ray cluster: at the address, or the one that this machine belongs to",
-    )
+    parser.add_argument("--ray", action="store_true", help="make the runs on a Ray cluster")
+    parser.add_argument("--address", help="the Ray cluster; default: the one that this machine belongs to")
     parser.add_argument("--part", type=_part, metavar="I/N", help="only part I of N, from 1, without a table")
     parser.add_argument("--quiet", action="store_true", help="no progress")
     given = parser.parse_args(arguments)
@@ -36,8 +31,8 @@ def main(arguments: list[str] | None = None) -> int:
         result = sweep(
             given.study,
             out=given.out,
-            backend="local" if given.ray is None else "ray",
-            address=given.ray or None,
+            backend="ray" if given.ray else "local",
+            address=given.address,
             workers=given.workers,
             part=given.part,
             progress=not given.quiet,
@@ -56,6 +51,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _part(text: str) -> tuple[int, int]:
+    """Two numbers with a slash between them."""
     first, _, second = text.partition("/")
     return int(first), int(second)
 

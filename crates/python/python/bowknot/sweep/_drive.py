@@ -18,6 +18,9 @@ from ._study import Study
 #: How often progress is told while no run ends [s].
 _TICK = 0.5
 
+#: How long the first run may take to appear where machines share files [s].
+_PATIENCE = 60.0
+
 #: How many problems of a study are listed.
 _LISTED = 10
 
@@ -104,7 +107,7 @@ def drive(
     if not waiting:
         return
     tries: collections.Counter[str] = collections.Counter()
-    left = len(waiting)
+    left, seen = len(waiting), False
     pool = make_pool()
     try:
         while left:
@@ -115,6 +118,9 @@ def drive(
             ended = pool.next(_TICK)
             if ended:
                 run, outcome = ended
+                if outcome["status"] == "done" and not seen:
+                    seen = True
+                    _see(study, results, run, outcome)
                 if outcome["status"] == "lost" and tries[run] <= study.retries:
                     waiting.append(run)
                     progress.retried += 1
@@ -126,6 +132,19 @@ def drive(
             progress.tell()
     finally:
         pool.close()
+
+
+def _see(study: Study, results: LocalStore | RemoteStore, run: str, outcome: dict[str, Any]) -> None:
+    """Refuses a folder that workers do not share with this process."""
+    until = time.monotonic() + _PATIENCE
+    while not results.outcomes([run]):
+        if time.monotonic() > until:
+            host = outcome["columns"]["cost.host"]
+            raise InputError(
+                f"out = {study.out!r}: run {run} of the worker on {host} is not here; give a folder that all machines "
+                "share under this path, or a URL"
+            )
+        time.sleep(1.0)
 
 
 def _job(study: Study, planned: Plan, run: str, values: dict[str, Any], tries: int) -> dict[str, Any]:

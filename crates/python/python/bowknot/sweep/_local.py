@@ -90,11 +90,11 @@ class LocalPool:
             try:
                 if process is None or process.poll() is not None:
                     process = self._start(errors)
-                outcome = _exchange(process, job)
+                outcome = _exchange(process, job) or _lost(process, errors)
             except Exception as error:
                 self._results.put((job["run"], error))
                 return
-            self._results.put((job["run"], outcome or _lost(process, errors)))
+            self._results.put((job["run"], outcome))
 
     def _start(self, errors: IO[bytes]) -> subprocess.Popen[bytes]:
         errors.seek(0)
@@ -111,7 +111,8 @@ class LocalPool:
                 start_new_session=True,
             )
             self._processes = [other for other in self._processes if other.poll() is None] + [process]
-        if not _line(process):
+        # One that a signal ended is lost, as it would be later; one that ended by itself will do so again.
+        if not _line(process) and process.wait() > 0:
             raise BowknotError(f"workers cannot start: {_lost(process, errors)['reason']}")
         return process
 

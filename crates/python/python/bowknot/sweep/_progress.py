@@ -43,9 +43,10 @@ class Progress:
         parts += [f"{self.found} of them before"] if self.found else []
         parts += [f"{self.failed} failed"] if self.failed else []
         parts += [f"{self.retried} lost and tried again"] if self.retried else []
+        parts += [f"{self.left} left"] if self.left else []
         parts += [f"{_clock(self.seconds)} so far"]
         if self.left and self.seconds_left is not None:
-            parts += [f"about {_clock(self.seconds_left)} left"]
+            parts += [f"about {_clock(self.seconds_left)} to go"]
         return ", ".join(parts)
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import logging
+import signal
+import socket
 from typing import Any
 
 from .._errors import InputError
@@ -15,6 +17,9 @@ _QUEUED = 1000
 
 #: How long runs may take to write a checkpoint when all are told to stop [s].
 _GRACE = 30.0
+
+#: How long an address may take to answer [s].
+_ANSWER = 10.0
 
 
 class RayPool:
@@ -28,10 +33,15 @@ class RayPool:
         self._ray = ray
         self._is_ours = not ray.is_initialized()
         if self._is_ours:
+            _reach(address)
+            before = signal.getsignal(signal.SIGTERM)
             try:
                 ray.init(address=address, log_to_driver=False, logging_level=logging.WARNING)
             except (ConnectionError, ValueError, RuntimeError) as error:
-                raise InputError(f"no Ray cluster at {address or 'its default address'}: {error}") from error
+                raise InputError(f"address = {address!r}: no Ray cluster: {error}") from error
+            with contextlib.suppress(ValueError):
+                # Ray puts a handler of its own there; only the main thread can.
+                signal.signal(signal.SIGTERM, before)
         # Lost runs are tried again by the sweep, which counts the tries and knows the reasons.
         self._task = ray.remote(num_cpus=threads, max_retries=0)(work)
         self._running: dict[Any, str] = {}
@@ -69,3 +79,13 @@ class RayPool:
             self._ray.wait(list(self._running), num_returns=len(self._running), timeout=_GRACE)
         if self._is_ours:
             self._ray.shutdown()
+
+
+def _reach(address: str | None) -> None:
+    """Refuses an address `host:port` where nothing answers: Ray would try for minutes."""
+    host, _, port = (address or "").rpartition(":")
+    if host and port.isdigit():
+        try:
+            socket.create_connection((host, int(port)), _ANSWER).close()
+        except OSError as error:
+            raise InputError(f"address = {address!r}: no Ray cluster: {error}") from error

@@ -16,7 +16,9 @@ from ._work import work
 
 def main() -> None:
     """Makes runs until it is told to stop or the pool is gone."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Batch systems end all processes of a job by SIGTERM.
+    for end in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(end, signal.default_int_handler)
     # Whatever prints must not come between the outcomes.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
