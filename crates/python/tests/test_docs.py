@@ -10,7 +10,7 @@ from conftest import ROOT
 
 import bowknot
 
-DOCUMENTS = [ROOT / "docs" / "python.md", ROOT / "crates" / "python" / "README.md"]
+DOCUMENTS = [ROOT / "docs" / "python.md", ROOT / "docs" / "cluster.md", ROOT / "crates" / "python" / "README.md"]
 
 
 def blocks(path):
@@ -32,7 +32,7 @@ def test_blocks_run_from_top_to_bottom(path, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "name", ["_resolver", "_scene", "_simulator", "_tools", "_meshes", "_pictures", "_runs", "_info"]
+    "name", ["_resolver", "_scene", "_simulator", "_tools", "_meshes", "_pictures", "_runs", "_info", "sweep"]
 )
 def test_examples_of_docstrings_hold(name):
     module = importlib.import_module(f"bowknot.{name}")

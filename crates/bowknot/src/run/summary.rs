@@ -410,6 +410,17 @@ mod tests {
         assert_eq!(totals.unsolved_steps(), 0);
     }
 
+    /// A resumed run reads the statistics of its first part back.
+    #[test]
+    fn statistics_that_are_read_have_the_same_bits() {
+        // Fast parsers round this number to its neighbor.
+        let statistics =
+            StepStatistics { max_step_stretch: 1.310_944_399_681_963_9, ..StepStatistics::default() };
+        let read: StepStatistics =
+            serde_json::from_str(&serde_json::to_string(&statistics).unwrap()).unwrap();
+        assert_eq!(read.max_step_stretch.to_bits(), statistics.max_step_stretch.to_bits());
+    }
+
     /// Reading the combined statistics into the struct loses no key, changes no number and keeps the order.
     #[test]
     fn the_struct_has_every_number_of_the_statistics() {

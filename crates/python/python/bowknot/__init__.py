@@ -2,7 +2,7 @@
 
 `Resolver` keeps the states of anyone's dynamics free of intersections. `Scene` and `Simulator` simulate cloth, soft
 solids, hair and sand. `check`, `search` and `repair` work on meshes by themselves; `render` draws; `run` and `report`
-make the folders and pages of the command.
+make the folders and pages of the command, `sweep` many runs and a table of them.
 
 Lengths are in m, masses in kg, times in s; z is up. Vertices are arrays of float64 of shape (n, 3), triangles arrays of
 integers of shape (m, 3). Where a mesh is taken, objects of meshio, trimesh and pyvista are taken as well. Warnings go
@@ -10,6 +10,8 @@ to the logger ``bowknot``.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from . import _native
 from ._contacts import Contacts
@@ -30,6 +32,12 @@ from ._runs import Run, report, run
 from ._scene import Scene, builtin_scenes
 from ._simulator import Checkpoint, Simulator
 from ._tools import CheckReport, Pairs, check, check_path, repair, search
+
+if TYPE_CHECKING:
+    from .sweep import sweep
+else:
+    # A module that is called as its function, so that `import bowknot.sweep` takes nothing away.
+    from . import sweep
 
 __version__: str = _native.__version__
 
@@ -64,6 +72,7 @@ __all__ = [
     "run",
     "search",
     "set_threads",
+    "sweep",
     "threads",
 ]
 
