@@ -350,3 +350,20 @@ def test_backends_are_named():
         Simulator(scene, device=0)
     with pytest.raises((bowknot.DeviceError, InputError)):
         Simulator(scene, backend="gpu", device=10**6)
+
+
+def test_a_half_space_has_no_vertices():
+    scene = Scene(bodies=[{"shape": "sheet", "name": "cloth", "translate": [0, 0, 1]}])
+    scene.add_obstacle(shape="half-space", name="ground")
+    simulator = Simulator(scene)
+    assert "ground" in simulator.names
+    for ask in (simulator.positions_of, simulator.velocities_of, simulator.faces_of):
+        with pytest.raises(InputError, match='"ground" is a half-space: it has no vertices; `planes`'):
+            ask("ground")
+
+
+def test_messages_name_what_python_has():
+    line = Scene()
+    line.add_body([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 3]], name="a")
+    with pytest.raises(InputError, match="zero area.*: `bowknot.repair` drops these, its report counts them"):
+        Simulator(line)
