@@ -67,12 +67,13 @@ def test_a_simulation_plays(small, driver, tmp_path, capsys):
     assert movie.frames[0].shape == (48, 64, 3) and (movie.frames[0] != movie.frames[-1]).any()
     assert movie.seconds_per_frame == 4 * dt
     shown = small.render(size=(64, 48), quality="fast")
-    assert np.abs(movie.frames[-1].astype(int) - shown).max() <= 4
+    assert np.abs(movie.frames[-1].astype(int) - shown).max() <= 2
     page = movie._repr_html_()
     assert page.count("<script>") == 1 and 'max="3" value="3"' in page
     movie.save(tmp_path / "movie.png")
     assert [kind for kind, _ in chunks((tmp_path / "movie.png").read_bytes())].count(b"fcTL") == 4
     again = small.play(1, size=(64, 48), progress=True)
+    assert [info.step for info in movie.infos] == [1, 2, 3, 4, 5]
     assert len(again) == 2 and "play: frame 6 of 6" in capsys.readouterr().err
 
 

@@ -2,6 +2,7 @@
 
 import io
 import sys
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -73,6 +74,44 @@ def test_a_terminal_shows_one_line(monkeypatch, tmp_path):
     assert shown.getvalue().strip("\0") == ""
     monkeypatch.setattr(sys, "stderr", None)
     bowknot.run(scene(), tmp_path / "nobody", progress=True)
+
+
+@pytest.fixture
+def notebook(monkeypatch):
+    """A notebook that notes what it shows: the content of each display, by time."""
+    shown = []
+
+    def display(content, display_id):
+        assert display_id is True
+        shown.append([content])
+        return SimpleNamespace(update=shown[-1].append)
+
+    package, parts = ModuleType("IPython"), ModuleType("IPython.display")
+    package.get_ipython = lambda: SimpleNamespace(kernel=object())
+    parts.HTML, parts.display = str, display
+    monkeypatch.setitem(sys.modules, "IPython", package)
+    monkeypatch.setitem(sys.modules, "IPython.display", parts)
+    return shown
+
+
+def test_a_notebook_shows_a_bar(notebook, tmp_path):
+    bowknot.run(scene(), tmp_path / "run")
+    assert len(notebook) == 1
+    assert notebook[0][-1].startswith('<progress value="4" max="4"></progress> drape: frame 4 of 4')
+    bowknot.run(scene(), tmp_path / "silent", progress=False)
+    assert len(notebook) == 1
+
+
+def test_a_notebook_shows_pictures_while_they_are_computed(notebook, small):
+    try:
+        movie = small.play(3, size=(32, 24))
+    except bowknot.DeviceError as error:
+        pytest.skip(str(error))
+    (shown,) = notebook
+    assert len(shown) == 5 and len(set(shown)) == 5 and shown[-1] == ""
+    for made, content in enumerate(shown[:4]):
+        assert "data:image/png;base64," in content and f'value="{made}" max="3"' in content
+    assert len(movie) == 4
 
 
 def test_a_bar_says_how_long_the_rest_takes():

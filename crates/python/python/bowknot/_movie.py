@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import InputError
+from ._info import StepInfo
 from ._png import animated_png, png
 from ._progress import Bar, Callback, Display, callback_of, in_notebook
 
-#: Colors of frames are multiples of this, which makes their files half as large.
-_COLOR_STEP = 8
+#: Colors of frames are multiples of this, which makes their files smaller.
+_COLOR_STEP = 4
 
 #: Plays the frames of a page: a button, a slider, and the number of the frame.
 _SCRIPT = """
@@ -55,10 +56,19 @@ class Movie:
         Their times in the simulation [s].
     seconds_per_frame : float
         How long each is shown [s].
+    infos : list of StepInfo
+        What the time steps did, one for each.
     """
 
-    def __init__(self, frames: list[NDArray[np.uint8]], times: list[float], seconds_per_frame: float) -> None:
+    def __init__(
+        self,
+        frames: list[NDArray[np.uint8]],
+        times: list[float],
+        seconds_per_frame: float,
+        infos: list[StepInfo] | None = None,
+    ) -> None:
         self.frames, self.times, self.seconds_per_frame = frames, times, seconds_per_frame
+        self.infos: list[StepInfo] = [] if infos is None else infos
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes it as an animated PNG, which browsers play."""
@@ -107,6 +117,7 @@ def play(
     tell = Bar("play") if display is not None else callback_of(progress, "play")
     pictures: list[NDArray[np.uint8]] = []
     times: list[float] = []
+    infos: list[StepInfo] = []
 
     def look(made: int) -> None:
         if made % every == 0 or made == count:
@@ -126,16 +137,16 @@ def play(
     show(0, None)
     try:
         for made in range(1, count + 1):
-            info = simulator.step()
+            infos.append(simulator.step())
             look(made)
-            show(made, info)
+            show(made, infos[-1])
     finally:
         if display is not None:
             # The picture is that of the movie, which is shown if it is the last line of a cell.
             display.show("")
         elif isinstance(tell, Bar):
             tell.end()
-    return Movie(pictures, times, every * dt / float(speed))
+    return Movie(pictures, times, every * dt / float(speed), infos)
 
 
 def _base64(pixels: NDArray[np.uint8]) -> str:
