@@ -115,8 +115,8 @@ def test_a_notebook_shows_pictures_while_they_are_computed(notebook, small):
 
 
 def test_a_bar_says_how_long_the_rest_takes():
-    bar = Bar("what")
-    bar._first, bar._start = 10, bar._start - 30.0
+    bar = Bar("what", first=10)
+    bar._start -= 30.0
     assert "frame 20 of 40" in bar.text(20, 40) and "1 min 0 s left" in bar.text(20, 40)
     assert 'value="20" max="40"' in bar.html(20, 40)
 

@@ -107,14 +107,17 @@ def play(
     **options: Any,
 ) -> Movie:
     """Makes time steps and pictures of them; see `Simulator.play`."""
-    count = simulator.scene.frames - simulator.frame if frames is None else int(frames)
-    if count < 0 or int(every) < 1:
+    count = max(simulator.scene.frames - simulator.frame, 0) if frames is None else int(frames)
+    every = int(every)
+    if count < 0 or every < 1:
         raise InputError(f"frames {count}, every {every}: expected at least 0 and 1")
     if not 0.0 < float(speed) < float("inf"):
         raise InputError(f"speed {speed}: it must be a number above 0")
     first, dt = simulator.frame, simulator.scene.dt
-    display = Display() if in_notebook() and not callable(progress) and progress is not False else None
-    tell = Bar("play") if display is not None else callback_of(progress, "play")
+    tell = callback_of(progress, "play")
+    # Where a bar would be shown in a notebook, pictures are shown above it.
+    bar = Bar("play", first)
+    display = Display() if isinstance(tell, Bar) and in_notebook() else None
     pictures: list[NDArray[np.uint8]] = []
     times: list[float] = []
     infos: list[StepInfo] = []
@@ -128,8 +131,8 @@ def play(
     def show(made: int, info: Any) -> None:
         if display is not None:
             picture = _base64(pictures[-1])
-            bar = tell.html(first + made, first + count)
-            display.show(f'<img src="data:image/png;base64,{picture}"/><br/>{bar}')
+            progress_bar = bar.html(first + made, first + count)
+            display.show(f'<img src="data:image/png;base64,{picture}"/><br/>{progress_bar}')
         elif tell is not None:
             tell(first + made, first + count, info)
 

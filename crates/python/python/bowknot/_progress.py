@@ -52,12 +52,14 @@ class Bar:
     ----------
     what : str
         What goes on.
+    first : int, optional
+        The frame at which it begins. Default: the first that is shown.
     """
 
-    def __init__(self, what: str) -> None:
+    def __init__(self, what: str, first: int | None = None) -> None:
         self._what = what
         self._start = time.monotonic()
-        self._first: int | None = None
+        self._first = first
         self._shown = float("-inf")
         self._display = Display() if in_notebook() else None
 

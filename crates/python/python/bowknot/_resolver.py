@@ -195,7 +195,7 @@ class Resolver:
             _arrays.column("plane_friction", plane_friction, len(planes)),
         ]
         no_groups = np.zeros(0, np.uint32)
-        arrays = [
+        arrays: list[NDArray[Any]] = [
             mesh.vertices,
             mesh.faces,
             mesh.edges,

@@ -44,7 +44,7 @@ def shape(shape: str | Mapping[str, Any], **keys: Any) -> Mesh:
     >>> bowknot.shape("ball", radius=0.1, edge=0.05)
     Mesh(42 vertices, 80 faces)
     """
-    table = dict(shape) if isinstance(shape, Mapping) else {"type": shape}
+    table: dict[str, Any] = dict(shape) if isinstance(shape, Mapping) else {"type": shape}
     if not isinstance(table.get("type"), str):
         raise InputError(f"shape: expected the type of a shape or a dict with the key type, got {shape!r}")
     if table["type"] == "half-space":

@@ -498,8 +498,8 @@ class Simulator:
         or `run` of that scene, on any backend. Gravity, pins, bodies and materials are then those of the state, not
         those changed since.
 
-        A state of another scene is refused if its numbers of vertices, elements, pins or obstacles differ. Other
-        differences, such as lengths or materials in the scene, are not seen.
+        A state of another scene is refused if it has other numbers of vertices, of bodies, obstacles and half-spaces,
+        or of pins and their vertices. Other differences, such as of materials or shapes, are not seen.
 
         Parameters
         ----------
