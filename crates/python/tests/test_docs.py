@@ -32,7 +32,8 @@ def test_blocks_run_from_top_to_bottom(path, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "name", ["_resolver", "_scene", "_simulator", "_tools", "_meshes", "_pictures", "_runs", "_info", "sweep"]
+    "name",
+    "_resolver _scene _shapes _simulator _tools _meshes _movie _pictures _runs _info _files sweep".split(),
 )
 def test_examples_of_docstrings_hold(name):
     module = importlib.import_module(f"bowknot.{name}")

@@ -1,6 +1,8 @@
 """The collision stage behind other dynamics."""
 
+import inspect
 import math
+import pickle
 import threading
 
 import numpy as np
@@ -122,8 +124,14 @@ def test_parameters_have_the_names_of_scenes():
     assert resolver.lengths["delta"] == 0.01
     _, info = resolver.resolve(x, swapped(x))
     assert info.steps <= 3
-    with pytest.raises(InputError, match="unknown parameter 'deltaa'"):
+    with pytest.raises(InputError, match="unknown parameter 'deltaa'; did you mean 'delta'"):
         Resolver(x, faces, deltaa=1.0)
+    with pytest.raises(InputError, match="did you mean 'friction'"):
+        Resolver(x, faces, frictoin=1.0)
+    with pytest.raises(InputError, match="unknown parameter 'xyz'; known are: ") as refused:
+        Resolver(x, faces, xyz=1.0)
+    for name in [*inspect.signature(Resolver).parameters, "max_steps"]:
+        assert name == "params" or f" {name}" in str(refused.value)
     with pytest.raises(InputError, match="delta"):
         Resolver(x, faces, delta=-1.0)
     with pytest.raises(InputError, match="sweeps"):
@@ -141,7 +149,7 @@ def test_parameters_have_the_names_of_scenes():
             {"faces": [[0.0, 1.0, 2.0]]},
             "expected an array of shape .m, 3. of integers, got shape .1, 3. of float64",
         ),
-        ({"masses": 0.0}, "mass"),
+        ({"masses": 0.0}, "mass .* and name it in `fixed`"),
         ({"masses": [1.0, 2.0]}, r"masses: expected an array of shape \(32,\) of float64, got shape \(2,\)"),
         ({"masses": math.nan}, "mass"),
         ({"bodies": [0] * 31}, "bodies"),
@@ -215,3 +223,17 @@ def test_contact_forces_hold_what_lies_and_brake_what_slides(friction):
     np.testing.assert_allclose(torque, lever)
     with pytest.raises(InputError, match="dt 0"):
         resolver.contacts(0.0)
+
+
+def test_a_pickle_makes_the_same_resolver():
+    x, faces = two_sheets(6)
+    masses = np.linspace(1.0, 2.0, len(x))
+    resolver = Resolver(x, faces, masses=masses, fixed=[0, 40], friction=0.3, max_steps=5)
+    expected, _ = resolver.resolve(x, swapped(x))
+    rest = x.copy()
+    x[:] += 1.0  # what was given may change
+    masses[:] = 1.0
+    again = pickle.loads(pickle.dumps(resolver))
+    assert again.vertex_count == resolver.vertex_count and again.lengths == resolver.lengths
+    moved, _ = again.resolve(rest, swapped(rest))
+    assert (moved == expected).all()

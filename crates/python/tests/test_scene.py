@@ -182,3 +182,14 @@ def test_pickles_of_scenes_are_equal():
     again = pickle.loads(pickle.dumps(scene))
     assert again == scene and again.frames == scene.frames
     assert (Simulator(again).positions == Simulator(scene).positions).all()
+
+
+@pytest.mark.parametrize(
+    "shape", ["sheet", "block", {"type": "tet-ball"}, "strands", "woven", "grains", "garment", "ribbon"]
+)
+def test_the_kind_of_a_body_follows_from_its_shape(shape):
+    scene = Scene(bodies=[{"shape": shape, "name": "one"}])
+    scene.add_body(shape=shape, name="two", translate=[5, 0, 0])
+    assert len(Simulator(scene).positions) > 0
+    with pytest.raises(InputError, match="makes a body of kind|can only"):
+        scene.add_body(shape=shape, name="three", kind="solid" if shape in ("sheet", "garment", "ribbon") else "cloth")

@@ -350,3 +350,44 @@ def test_backends_are_named():
         Simulator(scene, device=0)
     with pytest.raises((bowknot.DeviceError, InputError)):
         Simulator(scene, backend="gpu", device=10**6)
+
+
+def test_a_half_space_has_no_vertices():
+    scene = Scene(bodies=[{"shape": "sheet", "name": "cloth", "translate": [0, 0, 1]}])
+    scene.add_obstacle(shape="half-space", name="ground")
+    simulator = Simulator(scene)
+    assert "ground" in simulator.names
+    for ask in (simulator.positions_of, simulator.velocities_of, simulator.faces_of):
+        with pytest.raises(InputError, match='"ground" is a half-space: it has no vertices; `planes`'):
+            ask("ground")
+
+
+def test_messages_name_what_python_has():
+    line = Scene()
+    line.add_body([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 3]], name="a")
+    with pytest.raises(InputError, match="zero area.*: `bowknot.repair` drops these, its report counts them"):
+        Simulator(line)
+
+
+def test_what_a_state_of_another_scene_is_refused_for():
+    scene = Scene.builtin("drape", scale=0.2)
+    simulator = Simulator(scene)
+    simulator.step()
+    state = simulator.checkpoint()
+    other = scene.copy()
+    other.set("body.sheet.material", "silk")
+    Simulator(other).restore(state)  # not seen
+    pinned, more = scene.copy(), scene.copy()
+    pinned.add_pin("sheet", [0])
+    more.add_obstacle(shape="half-space", name="below", translate=[0, 0, -5])
+    for refused, text in (
+        (pinned, "its pins"),
+        (more, "its obstacles"),
+        (Scene.builtin("drape", scale=0.3), "another"),
+    ):
+        with pytest.raises(InputError, match=text):
+            Simulator(refused).restore(state)
+    simulator.add_body([[0, 0, 3], [0.1, 0, 3], [0, 0.1, 3]], [[0, 1, 2]], name="late")
+    again = Simulator(scene)
+    again.restore(simulator.checkpoint())
+    assert "late" in again.names

@@ -80,3 +80,39 @@ def test_solids_are_judged_by_their_surface():
     mesh, report = bowknot.repair(corners, tets=tets)
     assert len(mesh.tets) == 2 and report.solid is not None
     assert bowknot.check(mesh)
+
+
+@pytest.mark.parametrize(
+    ("shape", "part", "columns"),
+    [
+        ("ball", "faces", 3),
+        ("garment", "faces", 3),
+        ("block", "tets", 4),
+        ("tet-ball", "tets", 4),
+        ("strands", "edges", 2),
+        ("woven", "edges", 2),
+        ({"type": "figure", "edge": 0.03}, "faces", 3),
+    ],
+)
+def test_shapes_have_arrays(shape, part, columns):
+    mesh = bowknot.shape(shape)
+    sizes = {name: len(getattr(mesh, name)) for name in ("faces", "tets", "edges", "particles")}
+    assert [name for name, size in sizes.items() if size > 0] == [part]
+    assert getattr(mesh, part).shape[1] == columns and getattr(mesh, part).max() == len(mesh.vertices) - 1
+    assert bowknot.check(mesh)
+
+
+def test_shapes_are_placed_and_refused():
+    ball = bowknot.shape("ball", radius=0.1, edge=0.03, translate=[0.0, 0.0, 2.0])
+    radii = np.linalg.norm(ball.vertices - [0.0, 0.0, 2.0], axis=1)
+    assert np.allclose(radii, 0.1)
+    grains = bowknot.shape({"type": "grains", "count": [2, 3, 4]})
+    assert sorted(grains.particles) == list(range(24))
+    for refused, text in (
+        ({"shape": "half-space"}, "no mesh"),
+        ({"shape": "bal"}, "^shape.type.*did you mean ball"),
+        ({"shape": "ball", "radius": -1.0}, "^shape.radius"),
+        ({"shape": {"radius": 1.0}}, "key type"),
+    ):
+        with pytest.raises(InputError, match=text):
+            bowknot.shape(**refused)

@@ -5,6 +5,7 @@
 //! | `check` | runs everything that CI runs |
 //! | `faults` | kills runs, damages files and fills disks, for longer than CI does |
 //! | `pictures` | draws the built-in scenes into `assets/pictures` |
+//! | `notebooks` | executes the notebooks of the documentation |
 //! | `miri` | runs unit tests of the numerical crates under Miri |
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
 //! | `soak` | draws collision problems for minutes or hours, and judges every accepted step |
@@ -24,6 +25,7 @@ mod hashes;
 mod miri;
 mod mutations;
 mod nightly;
+mod notebooks;
 mod pictures;
 mod readers;
 mod soak;
@@ -48,6 +50,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask mutations [NAME..]
        cargo xtask twins
        cargo xtask wheel [--test]
+       cargo xtask notebooks [NAME..]
 
 check     run what CI runs, in named steps: format, \
 clippy, docs, wasm, a small run, its exports read back, the Python
@@ -94,7 +97,10 @@ twins     write crates/gpu/src/kernels, what \
 the CPU runs in place of each kernel, from crates/gpu/shader: after every change of a
           shader
 wheel     build the Python package as a release uploads it, in target/wheels; needs Python with venv
-          --test        install it into an environment of its own and run its tests";
+          --test        install it into an environment of its own and run its tests
+notebooks execute the notebooks of docs/notebooks, all or those named, with the wheel of this \
+commit, and write their outputs
+          into them; needs Python with venv, and a graphics driver";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -129,6 +135,9 @@ fn main() -> ExitCode {
         ["twins"] => twins::run(&workspace::root()),
         ["wheel"] => wheel::run(&workspace::root(), false),
         ["wheel", "--test"] => wheel::run(&workspace::root(), true),
+        ["notebooks", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
+            notebooks::run(&workspace::root(), names)
+        }
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS

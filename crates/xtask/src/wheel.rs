@@ -37,7 +37,7 @@ fn build_and_test(root: &Path, target: &Path, with_tests: bool) -> Result<PathBu
             return Err(Error::other("the tests of the Python package failed"));
         }
     }
-    newest(&wheels(target))
+    newest(target)
 }
 
 /// Builds the wheel, into `target/wheels`.
@@ -74,7 +74,7 @@ pub fn tests(root: &Path, target: &Path) -> Command {
 pub fn test(command: &mut Command) -> Result<bool> {
     let folder = venv::folder(Path::new(command.get_program()));
     let target = command.get_current_dir().unwrap_or(Path::new("."));
-    let wheel = newest(&wheels(target))?;
+    let wheel = newest(target)?;
     venv::install(&folder, &["--force-reinstall".as_ref(), "--no-deps".as_ref(), wheel.as_os_str()])?;
     Ok(command.status()?.success())
 }
@@ -88,8 +88,9 @@ fn wheels(target: &Path) -> PathBuf {
 }
 
 /// The wheel of the last build.
-fn newest(folder: &Path) -> Result<PathBuf> {
-    found(folder).pop().ok_or_else(|| Error::other(format!("{} holds none", folder.display())))
+pub fn newest(target: &Path) -> Result<PathBuf> {
+    let folder = wheels(target);
+    found(&folder).pop().ok_or_else(|| Error::other(format!("{} holds none", folder.display())))
 }
 
 /// The wheels of the package in a folder.

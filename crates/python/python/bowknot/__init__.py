@@ -26,10 +26,12 @@ from ._errors import (
 from ._files import FilesReport, check_files
 from ._info import Info, StepInfo
 from ._meshes import Mesh, read_mesh
+from ._movie import Movie
 from ._pictures import keep_silent, render
 from ._resolver import Resolver
 from ._runs import Run, report, run
 from ._scene import Scene, builtin_scenes
+from ._shapes import shape
 from ._simulator import Checkpoint, Simulator
 from ._tools import CheckReport, Pairs, check, check_path, repair, search
 
@@ -54,6 +56,7 @@ __all__ = [
     "InternalError",
     "IntersectionError",
     "Mesh",
+    "Movie",
     "Pairs",
     "Resolver",
     "Run",
@@ -72,6 +75,7 @@ __all__ = [
     "run",
     "search",
     "set_threads",
+    "shape",
     "sweep",
     "threads",
 ]

@@ -126,6 +126,14 @@ def whole(name: str, value: ArrayLike, rows: int, largest: int, none: int | None
     return numbers_of_all
 
 
+def bodies(value: ArrayLike | None, obstacle: NDArray[np.bool_]) -> NDArray[np.uint32]:
+    """The body of each vertex: as given, or by default 0, and 1 for the vertices of obstacles."""
+    if value is None:
+        return obstacle.astype(np.uint32)
+    # None has more bodies than vertices, but the one of obstacles is 1 by default.
+    return whole("bodies", value, len(obstacle), max(len(obstacle), 2) - 1)
+
+
 def column(name: str, value: ArrayLike | None, rows: int) -> NDArray[np.float64]:
     """One number per row, from such an array or from one number for all; nan where nothing is given."""
     if value is None:

@@ -5,9 +5,7 @@ from __future__ import annotations
 import base64
 import html as html_text
 import os
-import struct
 import sys
-import zlib
 from types import SimpleNamespace
 from typing import Any
 
@@ -18,6 +16,7 @@ from . import _arrays, _native
 from ._call import call
 from ._errors import DeviceError, InputError
 from ._meshes import mesh_of
+from ._png import png
 
 
 def render(
@@ -145,21 +144,6 @@ def keep_silent() -> None:
     is_set = any(os.environ.get(name) for name in ("XDG_RUNTIME_DIR", "MESA_VK_DEVICE_SELECT"))
     if sys.platform == "linux" and not is_set:
         os.environ.setdefault("NODEVICE_SELECT", "1")
-
-
-def png(pixels: NDArray[np.uint8]) -> bytes:
-    """Pixels of shape (height, width, 3) as a PNG file."""
-    height, width, _ = pixels.shape
-
-    def chunk(kind: bytes, content: bytes) -> bytes:
-        check = zlib.crc32(kind + content)
-        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", check)
-
-    # Each row is its filter, none, and its pixels.
-    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, 3 * width)], axis=1)
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    data = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes())) + chunk(b"IEND", b"")
-    return b"\x89PNG\r\n\x1a\n" + data
 
 
 def html(simulator: Any) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+import inspect
 from collections.abc import Mapping
 from typing import Any
 
@@ -40,10 +42,17 @@ def _assignments(params: Mapping[str, Any]) -> list[str]:
         elif name in _KEYS:
             sets.append(f"{_KEYS[name]}={_toml.value(name, value)}")
         else:
-            known = ", ".join(sorted([*_KEYS, "contact", "solver"]))
-            raise InputError(f"unknown parameter {name!r}; known are: {known}")
+            raise InputError(_unknown(name))
     # A preset is a set of defaults for all others.
     return sorted(sets, key=lambda text: not text.startswith("contact.preset="))
+
+
+def _unknown(name: str) -> str:
+    own = [key for key in inspect.signature(Resolver).parameters if key != "params"]
+    known = sorted({*own, *_KEYS, "contact", "solver"})
+    near = difflib.get_close_matches(name, known, 1)
+    hint = f"did you mean {near[0]!r}? Known" if near else "known"
+    return f"unknown parameter {name!r}; {hint} are: {', '.join(known)}"
 
 
 def _nested(path: str, table: Mapping[str, Any]) -> list[str]:
@@ -110,7 +119,8 @@ class Resolver:
     -----
     **Edges are limited to 1.1 times their rest length by default**; ``stretch_limit=math.inf`` switches that off.
 
-    Calls release the interpreter's lock. One resolver serves one thread at a time.
+    Calls release the interpreter's lock. One resolver serves one thread at a time. A pickle holds what the resolver was
+    made of, not the state that it returned last: the next call judges its start.
 
     Examples
     --------
@@ -152,8 +162,8 @@ class Resolver:
         if count == 0:
             raise InputError("rest: there are no vertices")
         obstacle = _arrays.flags("obstacles", obstacles, count)
+        body = _arrays.bodies(bodies, obstacle)
         if bodies is None:
-            body = obstacle.astype(np.uint32)
             for name, rows in (("face", mesh.faces), ("edge", mesh.edges)):
                 marked = obstacle[rows]
                 mixed = np.flatnonzero(marked.any(axis=1) & ~marked.all(axis=1))
@@ -162,9 +172,6 @@ class Resolver:
                         f"obstacles: {name} {mixed[0]} has vertices that are marked and others that are not; mark all "
                         "vertices of an obstacle"
                     )
-        else:
-            # None has more bodies than vertices, but the one of obstacles is 1 by default.
-            body = _arrays.whole("bodies", bodies, count, max(count, 2) - 1)
         body_count = int(body.max()) + 1
         planes = np.zeros((0, 4)) if planes is None else _arrays.numbers("planes", planes, 4)
 
@@ -188,30 +195,34 @@ class Resolver:
             _arrays.column("plane_thickness", plane_thickness, len(planes)),
             _arrays.column("plane_friction", plane_friction, len(planes)),
         ]
-        masses = _arrays.column("masses", masses, count)
-        self._fixed = _arrays.flags("fixed", fixed, count)
-        self._count = count
-        self._native = call(
-            _native.Resolver,
+        no_groups = np.zeros(0, np.uint32)
+        arrays: list[NDArray[Any]] = [
             mesh.vertices,
             mesh.faces,
             mesh.edges,
             mesh.particles,
-            masses,
-            self._fixed,
+            _arrays.column("masses", masses, count),
+            _arrays.flags("fixed", fixed, count),
             obstacle,
             body,
-            self._groups(groups),
+            no_groups if groups is None else _arrays.whole("groups", groups, count, 2**32 - 2, none=-1),
             planes,
             np.ascontiguousarray(np.column_stack(own)),
             np.ascontiguousarray(np.column_stack(own_of_planes)),
-            _assignments(params),
-        )
+        ]
+        # Copies, as what was given may change before a pickle is made.
+        self._make([array.copy() for array in arrays], _assignments(params))
 
-    def _groups(self, groups: ArrayLike | None) -> NDArray[np.uint32]:
-        if groups is None:
-            return np.zeros(0, np.uint32)
-        return _arrays.whole("groups", groups, self._count, 2**32 - 2, none=-1)
+    def _make(self, arrays: list[NDArray[Any]], sets: list[str]) -> None:
+        self._count = len(arrays[0])
+        self._native = call(_native.Resolver, *arrays, sets)
+        self._made_of = (arrays, sets)
+
+    def __getstate__(self) -> tuple[list[NDArray[Any]], list[str]]:
+        return self._made_of
+
+    def __setstate__(self, state: tuple[list[NDArray[Any]], list[str]]) -> None:
+        self._make(*state)
 
     @property
     def vertex_count(self) -> int:

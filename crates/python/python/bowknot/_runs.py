@@ -6,13 +6,16 @@ import html
 import json
 import os
 import tempfile
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 from . import _native
 from ._call import call, logger
 from ._errors import InputError
+from ._folders import replaced
 from ._meshes import Mesh, read_mesh
+from ._progress import Callback, Follower, callback_of
 from ._scene import Scene
 
 #: Largest page in a notebook [bytes].
@@ -52,8 +55,24 @@ class Run:
         return Scene.from_toml(self.folder / "scene.toml")
 
     def mesh(self, frame: int) -> Mesh:
-        """A frame from ``frames/*.ply``; half-spaces are squares behind the other vertices."""
-        return read_mesh(self.folder / "frames" / f"{int(frame):06}.ply")
+        """A frame from ``frames/*.ply``; half-spaces are squares behind the other vertices.
+
+        Raises
+        ------
+        InputError
+            A frame that the run has not, or a run that wrote no such files.
+        """
+        frames = self.folder / "frames"
+        path = frames / f"{int(frame):06}.ply"
+        if not path.is_file():
+            there = sorted(int(found.stem) for found in frames.glob("*.ply") if found.stem.isdigit())
+            if not there:
+                raise InputError(
+                    f'{frames} holds no PLY files; run the scene with "ply" among `output.formats`, or export the '
+                    "frames with the command `bowknot export`"
+                )
+            raise InputError(f"frame {frame} is not in {frames}; it holds {there[0]} to {there[-1]}")
+        return read_mesh(path)
 
     def report(self, out: str | os.PathLike[str] | None = None, **options: Any) -> Path:
         """Writes its page; see `bowknot.report`."""
@@ -74,7 +93,9 @@ def run(
     out: str | os.PathLike[str] | None = None,
     *,
     resume: bool = False,
+    overwrite: bool = False,
     check: bool = False,
+    progress: bool | Callback | None = None,
 ) -> Run:
     """Runs a scene to its last frame and writes the folder that the command writes.
 
@@ -86,8 +107,16 @@ def run(
         The folder; default ``out`` and the name of the scene.
     resume : bool
         Whether the run that the folder holds is continued.
+    overwrite : bool
+        Whether a run that the folder holds is replaced. What a run writes is removed, once the new one has begun;
+        other files of the folder stay.
     check : bool
         Whether every accepted state and path is judged.
+    progress : bool or function, optional
+        True shows how far it is: a bar in a notebook, elsewhere a line on the standard error. Default: if that is a
+        terminal, or in a notebook. A function is called as ``progress(frame, frames, info)`` before the first time
+        step and after others, on a thread of its own; ``info`` is the `StepInfo` of the last one, or None. If it
+        raises, it is called no more, and the run ends as usual before the exception comes.
 
     Returns
     -------
@@ -97,14 +126,24 @@ def run(
     Raises
     ------
     InputError
-        What the scene or the folder is refused for; a folder that holds a run already.
+        What the scene or the folder is refused for; a folder that holds a run already. What it holds stays.
     KeyboardInterrupt
         Ctrl-C. The folder then has a checkpoint, from which ``resume=True`` goes on.
     """
     if not isinstance(scene, Scene):
         raise InputError(f"scene: expected a Scene, got {type(scene).__name__}")
     folder = Path("out") / scene.name if out is None else Path(out)
-    _, findings, warnings = call(_native.run, scene._native, folder, bool(resume), bool(check))
+    if resume and overwrite:
+        raise InputError("resume, overwrite: only one of them can be True")
+    tell = callback_of(progress, scene.name)
+    stats = folder / "stats.jsonl"
+    if stats.exists() and not (resume or overwrite):
+        tell = None  # the run is refused
+    follower = None if tell is None else Follower(stats, scene.frames, tell)
+    with replaced(folder) if overwrite else nullcontext(), follower or nullcontext():
+        _, findings, warnings = call(_native.run, scene._native, folder, bool(resume), bool(check))
+    if follower is not None and follower.error is not None:
+        raise follower.error
     for warning in warnings:
         logger.warning("%s", warning)
     done = Run(folder)

@@ -19,6 +19,15 @@ from ._meshes import Mesh, is_path, mesh_of
 #: Keys of a body or an obstacle that hold arrays.
 _ARRAYS = ("faces", "tets", "edges", "particles")
 
+#: Kinds of bodies of generated shapes; all others are cloth.
+_KINDS = {
+    "block": "solid",
+    "tet-ball": "solid",
+    "strands": "strands",
+    "woven": "strands",
+    "grains": "particles",
+}
+
 _Table = Mapping[str, Any]
 
 
@@ -131,7 +140,8 @@ class Scene:
             Elements of an array of vertices: triangles of a cloth (m, 3), tetrahedra of a solid (t, 4), edges of
             strands (k, 2). Without any, each vertex is a particle.
         **keys
-            Keys of ``[[body]]``: ``name``, ``material``, ``translate``, ``friction``, ``shape`` and others.
+            Keys of ``[[body]]``: ``name``, ``material``, ``translate``, ``friction``, ``shape`` and others. ``kind``
+            follows from the elements or the shape.
 
         Raises
         ------
@@ -262,6 +272,8 @@ class Scene:
             plain = []
             for index, entry in enumerate(entries):
                 entry, mesh = _split(key, entry)
+                if key == "body" and "kind" not in entry and (kind := _kind(entry.get("shape"))):
+                    entry["kind"] = kind
                 plain.append(entry)
                 if mesh is not None:
                     edges = mesh.edges
@@ -277,6 +289,12 @@ class Scene:
 def _restored(text: str) -> Scene:
     """A scene that was pickled."""
     return Scene._of(_native.Scene.from_text(text, ""))
+
+
+def _kind(shape: Any) -> str | None:
+    """The kind of body that a generated shape makes; None for what is cloth by default."""
+    name = shape.get("type") if isinstance(shape, Mapping) else shape
+    return _KINDS.get(name) if isinstance(name, str) else None
 
 
 def _entry(mesh: Any, faces: Any, tets: Any, edges: Any, keys: dict[str, Any]) -> dict[str, Any]:

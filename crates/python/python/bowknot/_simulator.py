@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arrays, _native, _pictures, _toml
+from . import _arrays, _movie, _native, _pictures, _toml
 from ._call import call
 from ._contacts import Contacts, contacts_of
 from ._errors import InputError
 from ._files import count_of
 from ._info import StepInfo
+from ._movie import Movie
+from ._progress import Callback
 from ._scene import Scene, _entry
 from ._tools import CheckReport
 
@@ -253,6 +255,8 @@ class Simulator:
 
     def _body(self, name: str) -> int:
         names = self._layout["names"]
+        if name in self._layout["plane_names"]:
+            raise InputError(f'"{name}" is a half-space: it has no vertices; `planes` has its normal and offset')
         if name not in names:
             raise InputError(f'no body or obstacle with a mesh "{name}"; there are: {", ".join(names)}')
         return names.index(name)
@@ -452,7 +456,12 @@ class Simulator:
         return Checkpoint(call(self._native.checkpoint))
 
     def restore(self, checkpoint: Checkpoint, *, check: bool = True) -> None:
-        """Goes on from a state of the same scene.
+        """Goes on from a state of the scene that this simulation was made of: its own, or one of another `Simulator`
+        or `run` of that scene, on any backend. Gravity, pins, bodies and materials are then those of the state, not
+        those changed since.
+
+        A state of another scene is refused if it has other numbers of vertices, of bodies, obstacles and half-spaces,
+        or of pins and their vertices. Other differences, such as of materials or shapes, are not seen.
 
         Parameters
         ----------
@@ -482,6 +491,44 @@ class Simulator:
     def render(self, **options: Any) -> NDArray[np.uint8]:
         """Draws the present state; see `bowknot.render`."""
         return _pictures.render(self, **options)
+
+    def play(
+        self,
+        frames: int | None = None,
+        *,
+        every: int = 1,
+        speed: float = 1.0,
+        progress: bool | Callback | None = None,
+        **options: Any,
+    ) -> Movie:
+        """Makes time steps and a picture of each. A notebook shows them while they are computed, with a bar.
+
+        Parameters
+        ----------
+        frames : int, optional
+            How many time steps. Default: up to the number of frames of the scene.
+        every : int
+            Every how many time steps a picture is made; the first and the last state have one.
+        speed : float
+            How fast the movie plays: 1 is the time of the simulation.
+        progress : bool or function, optional
+            As of `bowknot.run`. With a function, or False, a notebook shows nothing meanwhile.
+        **options
+            Options of `bowknot.render`, by default ``size=(480, 360)`` and ``quality="fast"``.
+
+        Returns
+        -------
+        Movie
+            As the last line of a notebook's cell it plays; `Movie.save` writes a file that browsers play.
+
+        Raises
+        ------
+        DeviceError
+            No graphics driver.
+        InputError, KeyboardInterrupt
+            As of `step`.
+        """
+        return _movie.play(self, frames, every=every, speed=speed, progress=progress, **options)
 
     def __repr__(self) -> str:
         return f"Simulator({self._scene.name!r}: frame {self.frame} at {self.time:g} s, {len(self.positions)} vertices)"

@@ -92,12 +92,7 @@ class Pairs:
 def _given(
     mesh: Mesh, bodies: ArrayLike | None, obstacles: ArrayLike | None, planes: ArrayLike | None
 ) -> SimpleNamespace:
-    count = len(mesh.vertices)
-    obstacle = _arrays.flags("obstacles", obstacles, count)
-    if bodies is None:
-        body = obstacle.astype(np.uint32)
-    else:
-        body = _arrays.whole("bodies", bodies, count, max(count, 2) - 1)
+    obstacle = _arrays.flags("obstacles", obstacles, len(mesh.vertices))
     triangles = mesh.faces
     if len(mesh.tets) > 0:
         from ._pictures import _surface
@@ -108,7 +103,7 @@ def _given(
         strands=mesh.edges,
         particles=mesh.particles,
         obstacle=obstacle,
-        body=body,
+        body=_arrays.bodies(bodies, obstacle),
         planes=np.zeros((0, 4)) if planes is None else _arrays.numbers("planes", planes, 4),
     )
 
