@@ -11,10 +11,10 @@ use crate::tet_list::read_tet_list;
 use std::path::Path;
 
 /// Endings of the files that [`read_mesh`] reads, in lower case.
-pub const MESH_ENDINGS: [&str; 6] = ["obj", "ply", "msh", "t", "seg", "usda"];
+pub const MESH_ENDINGS: [&str; 8] = ["obj", "ply", "msh", "t", "seg", "usda", "gltf", "glb"];
 
 /// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (`.t`),
-/// strand segments (`.seg`).
+/// strand segments (`.seg`), USD stages and glTF scenes where nothing moves.
 ///
 /// # Errors
 /// A missing, malformed or truncated file, numbers that are not finite, indices out of range, an unknown
@@ -27,7 +27,7 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         "msh" => read_msh(path, import),
         "t" => read_tet_list(path, import),
         "seg" => read_segments(path, import),
-        "usda" => read_still(path, import),
+        "usda" | "gltf" | "glb" => read_still(path, import),
         _ => {
             let endings = MESH_ENDINGS.map(|ending| format!(".{ending}")).join(", ");
             Err(IoError::content(path, Place::File, format!("not a mesh: only {endings} files are read")))

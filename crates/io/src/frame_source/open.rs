@@ -4,6 +4,7 @@ use super::cache::PointCaches;
 use super::collection::Collection;
 use super::{FrameSource, Store};
 use crate::error::{IoError, Place};
+use crate::gltf::GltfScene;
 use crate::import::Import;
 use crate::mesh::Mesh;
 use crate::read::MESH_ENDINGS;
@@ -19,6 +20,9 @@ pub struct FrameOptions {
     /// Frames per second of a file that knows motion but no frames [1/s], a USD stage or a glTF scene; none:
     /// frames at the times of its samples or keys, each once.
     pub rate: Option<f64>,
+    /// Whether vertices of a glTF mesh stay apart that are the same in position, all morph targets and skin.
+    /// Exporters part them where texture coordinates or normals differ; by default they are joined.
+    pub keep_seams: bool,
 }
 
 impl FrameSource {
@@ -34,6 +38,7 @@ impl FrameSource {
     ///
     /// - a mesh of any format that [`read_mesh`](crate::read_mesh) reads: one frame;
     /// - a point cache `NAME.pc2`, with its mesh `NAME.obj` or `NAME.ply` beside it;
+    /// - a glTF scene `.gltf` or `.glb`, each node with a mesh a part, as its first animation moves them;
     /// - a USD stage `.usda`, each mesh, set of curves or points a part;
     /// - a collection `.pvd` of VTK files with their times;
     /// - an archive `.npz`;
@@ -62,21 +67,29 @@ impl FrameSource {
 /// As [`FrameSource::open_with`].
 pub(crate) fn read_still(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
-    let options = FrameOptions { import: *import, rate: None };
-    let mut mesh = Stage::open(path, &options)?.into_mesh();
+    let options = FrameOptions { import: *import, ..FrameOptions::default() };
+    let mut mesh = match ending(path).as_str() {
+        "gltf" | "glb" => GltfScene::open(path, &options)?.into_mesh(),
+        _ => Stage::open(path, &options)?.into_mesh(),
+    };
     import.convert(&mut mesh, path)?;
     Ok(mesh)
 }
 
 fn of_file(path: &Path, options: &FrameOptions) -> Result<FrameSource, IoError> {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    match ending.as_str() {
+    match ending(path).as_str() {
         "npz" => of_archive(path),
         "pc2" => PointCaches::open(&[path.to_owned()]).map(FrameSource::of_animation),
+        "gltf" | "glb" => GltfScene::open(path, options).map(FrameSource::of_animation),
         "usda" => Stage::open(path, options).map(FrameSource::of_animation),
         "pvd" => Collection::open(path).map(FrameSource::of_animation),
         _ => Ok(FrameSource { store: Store::Files(vec![path.to_owned()]), import: Import::default() }),
     }
+}
+
+/// The ending of a file's name in lower case.
+fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
 fn of_folder(folder: &Path) -> Result<FrameSource, IoError> {

@@ -7,6 +7,7 @@ mod obj;
 mod ply;
 mod polygons;
 mod robust;
+mod scenes;
 mod sources;
 mod stages;
 mod surface;

@@ -27,7 +27,7 @@ fn a_mesh_is_one_frame() {
     let frames = FrameSource::open(&path).unwrap();
     assert_eq!((frames.len(), frames.times(), frames.names().len()), (1, None, 0));
     assert_eq!(frames.read(0).unwrap().positions[0], Point::new(1.0, 2.0, 3.0));
-    let options = FrameOptions { import: Import { up: Up::Y, scale: 2.0 }, rate: None };
+    let options = FrameOptions { import: Import { up: Up::Y, scale: 2.0 }, ..FrameOptions::default() };
     let frames = FrameSource::open_with(&path, &options).unwrap();
     assert_eq!(frames.read(0).unwrap().positions[0], Point::new(2.0, -6.0, 4.0));
     let options = FrameOptions { rate: Some(0.0), ..options };

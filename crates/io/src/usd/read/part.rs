@@ -34,12 +34,19 @@ pub(super) fn is_other_shape(kind: &str) -> bool {
     OTHERS.contains(&kind)
 }
 
-/// The elements of a prim, over `points` points, without positions.
+/// The elements of a prim, over `points` points, without positions. If the prim is `mirrored`, its faces are turned
+/// round.
 ///
 /// # Errors
 /// Arrays that are missing, do not fit to each other, change with time, or name points that do not exist.
-pub(super) fn elements(arrays: &Arrays, path: &str, prim: &Prim, points: usize) -> Result<Mesh, IoError> {
-    let reader = Reader { arrays, path, prim, points };
+pub(super) fn elements(
+    arrays: &Arrays,
+    path: &str,
+    prim: &Prim,
+    points: usize,
+    mirrored: bool,
+) -> Result<Mesh, IoError> {
+    let reader = Reader { arrays, path, prim, points, mirrored };
     let mut mesh = Mesh::default();
     match prim.kind.as_str() {
         "Mesh" => reader.faces(&mut mesh)?,
@@ -65,6 +72,7 @@ struct Reader<'a> {
     path: &'a str,
     prim: &'a Prim,
     points: usize,
+    mirrored: bool,
 }
 
 impl Reader<'_> {
@@ -73,6 +81,7 @@ impl Reader<'_> {
         let indices = self.indices("faceVertexIndices")?;
         let mut rest = indices.as_slice();
         let flipped = self.prim.text("orientation") == Some("leftHanded");
+        let flipped = flipped != self.mirrored;
         for (face, &count) in counts.iter().enumerate() {
             let Some((corners, others)) = rest.split_at_checked(count) else {
                 return Err(self.fault(format!("face {face} has {count} points, {} are left", rest.len())));

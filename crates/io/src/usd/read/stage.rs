@@ -72,7 +72,10 @@ impl Stage {
             let part = &mut stage.parts[index];
             let points = point_count(&stage.arrays, part)?;
             part.count = points;
-            let mut mesh = elements(&stage.arrays, &part.path, prim, points)?;
+            let part = &stage.parts[index];
+            // The winding of faces is that of the mesh before it is mirrored.
+            let mirrored = stage.part_matrix(part, None)?.determinant() < 0.0;
+            let mut mesh = elements(&stage.arrays, &part.path, prim, points, mirrored)?;
             mesh.positions = stage.part_positions(&stage.parts[index], None)?;
             mesh.triangulate();
             let overflow =
@@ -125,16 +128,19 @@ impl Stage {
             let high = self.points(part, high)?;
             points.iter_mut().zip(high).for_each(|(p, q)| *p += (q - *p) * weight);
         }
-        let mut matrix = Matrix4::identity();
-        for &index in &part.chain {
-            let own = self.placements[index].matrix(code);
-            matrix *= own.map_err(|message| self.arrays.fault(&part.path, message))?;
-        }
-        place(&matrix, &mut points);
+        place(&self.part_matrix(part, code)?, &mut points);
         match points.iter().position(|point| !point.iter().all(|c| c.is_finite())) {
             None => Ok(points),
             Some(point) => Err(self.arrays.fault(&part.path, format!("point {point} is not finite"))),
         }
+    }
+
+    /// From a part to the stage.
+    fn part_matrix(&self, part: &Part, code: Option<f64>) -> Result<Matrix4<f64>, IoError> {
+        part.chain.iter().try_fold(Matrix4::identity(), |all, &index| {
+            let own = self.placements[index].matrix(code);
+            Ok(all * own.map_err(|message| self.arrays.fault(&part.path, message))?)
+        })
     }
 
     fn points(&self, part: &Part, value: &Value) -> Result<Vec<Point>, IoError> {
