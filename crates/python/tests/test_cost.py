@@ -1,8 +1,9 @@
-"""What the binding costs: time of a call from Python against the time that the library measures of itself."""
+"""What the package costs: time of calls and of runs beside the time that the library measures of itself."""
 
 import time
 
 import numpy as np
+import pytest
 from conftest import two_sheets
 
 import bowknot
@@ -41,3 +42,30 @@ def test_the_binding_costs_little_at_ten_thousand_vertices(capsys):
         print(f"\nbinding: {100 * of_resolver:.2f} % of resolve, {100 * of_simulator:.2f} % of step", end=" ")
     # The aim is 2 %; a busy machine may take the processor away between two clocks.
     assert of_resolver < 0.1 and of_simulator < 0.1
+
+
+def test_a_sweep_costs_little_per_run(tmp_path, capsys):
+    resource = pytest.importorskip("resource")
+
+    def cpu():
+        used = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+        return sum(usage.ru_utime + usage.ru_stime for usage in used)
+
+    def cost(samples):
+        """CPU seconds beside those of the runs, and of the same sweep again."""
+        study = {"scene": "drape", "scale": 0.2, "set": {"simulation.frames": 3}, "table": "table.csv"}
+        study["latin"] = {"samples": samples, "keys": {"body.sheet.friction": {"low": 0.0, "high": 0.5}}}
+        spent = []
+        for _ in range(2):
+            start = cpu()
+            rows = bowknot.sweep(study, out=tmp_path / str(samples), workers=1, progress=False).rows
+            spent.append(cpu() - start)
+        return spent[0] - sum(row["cost.cpu_seconds"] for row in rows), spent[1]
+
+    (alone, _), (many, again) = cost(1), cost(201)
+    per_run = (many - alone) / 200
+    with capsys.disabled():
+        found = f"{1000 * again / 201:.2f} ms per finished one"
+        print(f"\nsweep: {alone:.2f} s per worker, {1000 * per_run:.2f} ms per run, {found}", end=" ")
+    # Seconds of the processor, but a busy machine makes these longer too.
+    assert alone < 5.0 and per_run < 0.05

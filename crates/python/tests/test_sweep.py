@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import platform
 import shutil
 import signal
 import subprocess
@@ -64,6 +65,12 @@ def begun(folder):
 def linux():
     if not sys.platform.startswith("linux"):
         pytest.skip("reads /proc")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The long runs, undisturbed."""
+    return sweep(LONG, tmp_path_factory.mktemp("whole"))
 
 
 def test_all_combinations_are_run_in_order(tmp_path):
@@ -190,6 +197,14 @@ def test_the_content_of_mesh_files_counts(tmp_path):
     assert sweep(study, tmp_path / "out").rows[0]["hash"] != first
 
 
+def test_memory_is_that_of_each_run(tmp_path):
+    if platform.libc_ver()[0] != "glibc":
+        pytest.skip("other libraries may keep the memory")
+    study = {**SMALL, "grid": {"scale": [2.0, 0.2]}, "set": {"simulation.frames": 2}}
+    large, small = (row["cost.peak_memory_bytes"] for row in sweep(study, tmp_path, workers=1).rows)
+    assert small < 0.6 * large
+
+
 def test_failures_are_listed_with_reasons(tmp_path, monkeypatch):
     monkeypatch.setattr(_local, "_PROGRAM", CRASHING)
     study = {**SMALL, "retries": 1, "grid": {"body.sheet.friction": [0.1, 0.7]}}
@@ -228,8 +243,7 @@ def test_a_run_has_a_time_limit(tmp_path):
     assert (tmp_path / row["folder"] / "checkpoint/state.npz").is_file()
 
 
-def test_a_worker_that_is_killed_changes_nothing(tmp_path, linux):
-    whole = sweep(LONG, tmp_path / "whole")
+def test_a_worker_that_is_killed_changes_nothing(tmp_path, linux, whole):
     killed = []
 
     def kill():
@@ -247,12 +261,12 @@ def test_a_worker_that_is_killed_changes_nothing(tmp_path, linux):
     assert sorted(row["cost.tries"] for row in done.rows) == [1, 1, 1, 2]
     for row in done.rows:
         last = Path(row["folder"]) / "frames/000060.ply"
-        assert (tmp_path / "killed" / last).read_bytes() == (tmp_path / "whole" / last).read_bytes()
+        assert (tmp_path / "killed" / last).read_bytes() == (Path(whole.out) / last).read_bytes()
     assert not workers_of(os.getpid())
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_a_sweep_that_is_interrupted_goes_on(tmp_path, linux, how):
+def test_a_sweep_that_is_interrupted_goes_on(tmp_path, linux, whole, how):
     file, out = tmp_path / "study.toml", tmp_path / "out"
     file.write_text(
         f"""
@@ -279,7 +293,7 @@ def test_a_sweep_that_is_interrupted_goes_on(tmp_path, linux, how):
     done = subprocess.run([*command, "--quiet"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0 and done.stdout.strip() == str(out / "table.jsonl") and not done.stderr
     rows = [json.loads(line) for line in (out / "table.jsonl").read_text().splitlines()]
-    assert without_costs(rows) == without_costs(sweep(LONG, tmp_path / "whole").rows)
+    assert without_costs(rows) == without_costs(whole.rows)
 
 
 def test_the_command(tmp_path):
@@ -401,5 +415,6 @@ def test_bad_arguments_are_refused(tmp_path):
     "first", ["import bowknot", "import bowknot.sweep, bowknot", "from bowknot.sweep import sweep"]
 )
 def test_the_function_is_there_after_any_import(first):
-    program = f"{first}; import bowknot, bowknot.sweep; assert callable(bowknot.sweep) and bowknot.sweep.sweep"
+    program = f"{first}; import bowknot, bowknot.sweep, inspect; assert callable(bowknot.sweep) and bowknot.sweep.sweep"
+    program += "; assert 'study' in inspect.signature(bowknot.sweep).parameters"
     subprocess.run([sys.executable, "-c", program], check=True)

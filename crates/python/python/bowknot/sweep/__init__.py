@@ -5,6 +5,7 @@ The module is the function `bowknot.sweep`. ``python -m bowknot.sweep study.toml
 
 from __future__ import annotations
 
+import inspect
 import os
 import sys
 import types
@@ -165,3 +166,5 @@ class _Module(types.ModuleType):
 
 
 sys.modules[__name__].__class__ = _Module
+#: What help and editors show of a call.
+__signature__ = inspect.signature(sweep)

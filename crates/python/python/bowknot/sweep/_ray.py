@@ -9,6 +9,7 @@ import signal
 import socket
 from typing import Any
 
+from .._call import logger
 from .._errors import InputError
 from ._work import failed, work
 
@@ -42,6 +43,10 @@ class RayPool:
             with contextlib.suppress(ValueError):
                 # Ray puts a handler of its own there; only the main thread can.
                 signal.signal(signal.SIGTERM, before)
+        largest = max((node["Resources"].get("CPU", 0) for node in ray.nodes() if node["Alive"]), default=0)
+        if largest < threads:
+            text = "threads = %d: the largest machine of the cluster has %g CPUs; runs wait until a larger one joins"
+            logger.warning(text, threads, largest)
         # Lost runs are tried again by the sweep, which counts the tries and knows the reasons.
         self._task = ray.remote(num_cpus=threads, max_retries=0)(work)
         self._running: dict[Any, str] = {}

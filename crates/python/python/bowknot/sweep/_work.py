@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import contextlib
+import ctypes
 import logging
 import socket
 import threading
@@ -63,7 +64,7 @@ def failed(reason: str) -> dict[str, Any]:
 def _made(job: dict[str, Any]) -> dict[str, Any]:
     results = store(job["out"])
     scene = Scene.from_toml(job["scene"] + "\n")
-    _reset_peak_memory()
+    _forget_memory()
     cpu, wall = time.process_time(), time.perf_counter()
     with _warnings() as warnings, results.folder(job["run"], job["keep"]) as folder:
         done = _run(scene, folder, job["check"])
@@ -147,7 +148,10 @@ def _warnings() -> Any:
         logger.propagate = before
 
 
-def _reset_peak_memory() -> None:
-    """Forgets the largest memory of runs before, where the system can: proc_pid_clear_refs(5)."""
+def _forget_memory() -> None:
+    """Gives back the memory of runs before, and forgets how much it was, where the system can: malloc_trim(3) of the
+    GNU C library, proc_pid_clear_refs(5) of Linux."""
+    with contextlib.suppress(OSError, AttributeError, TypeError):
+        ctypes.CDLL(None).malloc_trim(0)
     with contextlib.suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
