@@ -1,8 +1,10 @@
 //! From a file's axes and unit to ours: z up, meters.
 
+use crate::error::{IoError, Place};
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// Which axis of a file points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,12 +45,33 @@ impl Import {
         };
         Point::new(self.scale * x, self.scale * y, self.scale * z)
     }
+
+    /// As [`Self::point`].
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, or overflow when scaled.
+    pub(crate) fn finite_point(&self, raw: [f64; 3]) -> Result<Point, String> {
+        let point = self.point(raw);
+        match point.iter().all(|c| c.is_finite()) {
+            true => Ok(point),
+            false if raw.iter().all(|c| c.is_finite()) => {
+                Err(format!("a coordinate overflows when scaled by {}", self.scale))
+            }
+            false => Err(format!("coordinates {raw:?} are not finite")),
+        }
+    }
 }
 
 impl Parameters for Import {
     fn check(&self, checks: &mut Checks) {
         checks.positive("scale", self.scale);
     }
+}
+
+/// The bytes of a file that is to be imported like this.
+pub(crate) fn read_bytes(path: &Path, import: &Import) -> Result<Vec<u8>, IoError> {
+    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
+    std::fs::read(path).map_err(|source| IoError::system("read", path, source))
 }
 
 /// A text without the byte order mark that some editors put before it.

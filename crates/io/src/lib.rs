@@ -22,6 +22,7 @@ mod obj;
 mod pc2;
 mod ply;
 mod read;
+mod stl;
 mod surface;
 mod tet_list;
 mod usd;

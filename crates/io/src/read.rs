@@ -6,13 +6,14 @@ use crate::mesh::Mesh;
 use crate::msh::read_msh;
 use crate::obj::{read_obj, read_segments};
 use crate::ply::read_ply;
+use crate::stl::read_stl;
 use crate::tet_list::read_tet_list;
 use std::path::Path;
 
 /// Endings of the files that [`read_mesh`] reads, in lower case.
-pub const MESH_ENDINGS: [&str; 5] = ["obj", "ply", "msh", "t", "seg"];
+pub const MESH_ENDINGS: [&str; 6] = ["obj", "ply", "stl", "msh", "t", "seg"];
 
-/// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (`.t`),
+/// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, STL, Gmsh's MSH, lists of tetrahedra (`.t`),
 /// strand segments (`.seg`).
 ///
 /// # Errors
@@ -23,6 +24,7 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     match ending.as_str() {
         "obj" => read_obj(path, import),
         "ply" => read_ply(path, import),
+        "stl" => read_stl(path, import),
         "msh" => read_msh(path, import),
         "t" => read_tet_list(path, import),
         "seg" => read_segments(path, import),

@@ -74,12 +74,12 @@ fn missing_files_and_wrong_endings() {
     }
     assert!(message(FrameStack::read(&at("none.npz"))).contains("no such file"));
     assert!(
-        message(read_mesh(&at("none.stl"), &Import::default()))
-            .contains("only .obj, .ply, .msh, .t, .seg files")
+        message(read_mesh(&at("none.glb"), &Import::default()))
+            .contains("only .obj, .ply, .stl, .msh, .t, .seg files")
     );
     assert!(
         message(read_mesh(folder.path(), &Import::default()))
-            .contains("only .obj, .ply, .msh, .t, .seg files")
+            .contains("only .obj, .ply, .stl, .msh, .t, .seg files")
     );
     fs::create_dir(at("folder.npz")).unwrap();
     fs::create_dir(at("folder.ply")).unwrap();
