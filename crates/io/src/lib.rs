@@ -9,9 +9,11 @@
 //! numbers that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests.
 
 mod atomic;
+mod elements;
 mod error;
 mod folder;
 mod frame_source;
+mod groups;
 mod import;
 mod mesh;
 mod msh;
@@ -35,6 +37,7 @@ pub use atomic::{create_folder, write_atomic, write_text};
 pub use error::{IoError, Place};
 pub use folder::files_in;
 pub use frame_source::FrameSource;
+pub use groups::Groups;
 pub use import::{Import, Up};
 pub use mesh::{Mesh, MeshView};
 pub use msh::write_msh;
