@@ -15,6 +15,7 @@ mod folder;
 mod frame_source;
 mod groups;
 mod import;
+mod medit;
 mod mesh;
 mod msh;
 #[cfg(feature = "npz")]
@@ -27,6 +28,7 @@ mod read;
 mod stl;
 mod surface;
 mod tet_list;
+mod tetgen;
 mod usd;
 mod vtu;
 

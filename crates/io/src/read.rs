@@ -2,18 +2,21 @@
 
 use crate::error::{IoError, Place};
 use crate::import::Import;
+use crate::medit::{read_medit, refuse_binary};
 use crate::mesh::Mesh;
 use crate::msh::read_msh;
 use crate::obj::{read_obj, read_segments};
 use crate::ply::read_ply;
 use crate::stl::read_stl;
 use crate::tet_list::read_tet_list;
+use crate::tetgen::read_tetgen;
 use std::path::Path;
 
 /// Endings of the files that [`read_mesh`] reads, in lower case.
-pub const MESH_ENDINGS: [&str; 6] = ["obj", "ply", "stl", "msh", "t", "seg"];
+pub const MESH_ENDINGS: [&str; 9] = ["obj", "ply", "stl", "msh", "mesh", "node", "ele", "t", "seg"];
 
-/// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, STL, Gmsh's MSH, lists of tetrahedra (`.t`),
+/// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, STL, Gmsh's MSH, Medit's
+/// `.mesh`, TetGen's `.node` and `.ele`, lists of tetrahedra (`.t`),
 /// strand segments (`.seg`).
 ///
 /// # Errors
@@ -26,6 +29,9 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         "ply" => read_ply(path, import),
         "stl" => read_stl(path, import),
         "msh" => read_msh(path, import),
+        "mesh" => read_medit(path, import),
+        "meshb" => Err(refuse_binary(path)),
+        "node" | "ele" => read_tetgen(path, import),
         "t" => read_tet_list(path, import),
         "seg" => read_segments(path, import),
         _ => {

@@ -94,13 +94,10 @@ fn extra_properties(element: &Element) -> Vec<usize> {
 fn is_known(name: &str) -> bool {
     let prefixes = ["normal_", "diffuse_", "ambient_", "specular_", "texture_"];
     let plain = prefixes.iter().find_map(|prefix| name.strip_prefix(prefix)).unwrap_or(name);
-    match plain {
-        "x" | "y" | "z" | "nx" | "ny" | "nz" => true,
-        "red" | "green" | "blue" | "alpha" | "r" | "g" | "b" | "a" => true,
-        "s" | "t" | "u" | "v" | "s0" | "t0" => true,
-        "obstacle" | "body" => true,
-        _ => false,
-    }
+    let is_place =
+        matches!(plain, "x" | "y" | "z" | "nx" | "ny" | "nz" | "s" | "t" | "u" | "v" | "s0" | "t0");
+    let is_color = matches!(plain, "red" | "green" | "blue" | "alpha" | "r" | "g" | "b" | "a");
+    is_place || is_color || matches!(name, "obstacle" | "body")
 }
 
 /// What becomes of the rows of an element.
