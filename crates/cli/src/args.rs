@@ -46,7 +46,7 @@ pub struct ScenesOptions {
 
 #[derive(Debug, Args)]
 pub struct RunOptions {
-    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply, .stl, .msh, .mesh, .ele, .t, .seg),
+    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply, .stl, .msh, .mesh, .ele, .vtu, .t, .seg),
     /// which falls on a ball: tetrahedra as a solid, else triangles as cloth, else edges as strands, else
     /// points as grains
     pub scene: String,
@@ -136,7 +136,7 @@ pub struct ResolveOptions {
 
 #[derive(Debug, Args)]
 pub struct CheckOptions {
-    /// States (.ply, .obj, .npz, .stl, .msh, .mesh, .ele, .t, .seg), folders of frames, or folders of runs; in a folder `trace`
+    /// States (.ply, .obj, .npz, .stl, .msh, .mesh, .ele, .vtu, .t, .seg), folders of frames, or folders of runs; in a folder `trace`
     /// the path between successive files is checked too
     #[arg(required = true, value_name = "PATH")]
     pub paths: Vec<PathBuf>,
@@ -256,7 +256,7 @@ pub struct FrameRange {
 
 #[derive(Debug, Args)]
 pub struct RepairOptions {
-    /// A mesh of triangles and strands, or of tetrahedra (.obj, .ply, .stl, .msh, .mesh, .ele, .t)
+    /// A mesh of triangles and strands, or of tetrahedra (.obj, .ply, .stl, .msh, .mesh, .ele, .vtu, .t)
     pub mesh: PathBuf,
     /// File for the repaired mesh (.obj, .ply; of tetrahedra .msh, .t)
     #[arg(long, value_name = "FILE")]
@@ -316,7 +316,7 @@ pub struct ReportOptions {
 
 #[derive(Debug, Args)]
 pub struct InfoOptions {
-    /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply, .stl, .msh, .mesh, .ele, .t, .seg)
+    /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply, .stl, .msh, .mesh, .ele, .vtu, .t, .seg)
     #[arg(required_unless_present = "gpus")]
     pub scene: Option<String>,
     /// Of a mesh: length of its unit [m; default: 1], 0.01 for centimeters

@@ -10,13 +10,14 @@ use crate::ply::read_ply;
 use crate::stl::read_stl;
 use crate::tet_list::read_tet_list;
 use crate::tetgen::read_tetgen;
+use crate::vtu::read_vtu;
 use std::path::Path;
 
 /// Endings of the files that [`read_mesh`] reads, in lower case.
-pub const MESH_ENDINGS: [&str; 9] = ["obj", "ply", "stl", "msh", "mesh", "node", "ele", "t", "seg"];
+pub const MESH_ENDINGS: [&str; 10] = ["obj", "ply", "stl", "msh", "mesh", "node", "ele", "vtu", "t", "seg"];
 
 /// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, STL, Gmsh's MSH, Medit's
-/// `.mesh`, TetGen's `.node` and `.ele`, lists of tetrahedra (`.t`),
+/// `.mesh`, TetGen's `.node` and `.ele`, VTK's VTU, lists of tetrahedra (`.t`),
 /// strand segments (`.seg`).
 ///
 /// # Errors
@@ -32,6 +33,7 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         "mesh" => read_medit(path, import),
         "meshb" => Err(refuse_binary(path)),
         "node" | "ele" => read_tetgen(path, import),
+        "vtu" => read_vtu(path, import),
         "t" => read_tet_list(path, import),
         "seg" => read_segments(path, import),
         _ => {
