@@ -46,9 +46,9 @@ pub struct ScenesOptions {
 
 #[derive(Debug, Args)]
 pub struct RunOptions {
-    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply, .msh, .t, .seg),
-    /// which falls on a ball: tetrahedra as a solid, else triangles as cloth, else edges as strands, else
-    /// points as grains
+    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply, .stl, .msh,
+    /// .mesh, .ele, .vtu, .t, .seg), which falls on a ball: tetrahedra as a solid, else triangles as cloth,
+    /// else edges as strands, else points as grains
     pub scene: String,
     /// Number of time steps [default: that of the scene]
     #[arg(long, value_name = "N")]
@@ -289,7 +289,7 @@ pub struct FrameRange {
 
 #[derive(Debug, Args)]
 pub struct RepairOptions {
-    /// A mesh of triangles and strands, or of tetrahedra (.obj, .ply, .msh, .t)
+    /// A mesh of triangles and strands, or of tetrahedra (.obj, .ply, .stl, .msh, .mesh, .ele, .vtu, .t)
     pub mesh: PathBuf,
     /// File for the repaired mesh (.obj, .ply; of tetrahedra .msh, .t)
     #[arg(long, value_name = "FILE")]
@@ -349,7 +349,8 @@ pub struct ReportOptions {
 
 #[derive(Debug, Args)]
 pub struct InfoOptions {
-    /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply, .msh, .t, .seg)
+    /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply, .stl, .msh, .mesh, .ele, .vtu, .t,
+    /// .seg)
     #[arg(required_unless_present = "gpus")]
     pub scene: Option<String>,
     /// Of a mesh: length of its unit [m; default: 1], 0.01 for centimeters
@@ -358,7 +359,7 @@ pub struct InfoOptions {
     /// Axis of a mesh that points up [default: z]
     #[arg(long, value_enum)]
     pub up: Option<Up>,
-    /// Print at most this many parts, borders, odd edges and problems of a mesh; all are counted
+    /// Print at most this many groups, parts, borders, odd edges and problems of a mesh; all are counted
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub list: usize,
     /// List the GPUs of this machine, for --device

@@ -7,8 +7,9 @@ use bowknot::geometry::{MeshEdge, MeshProblem, MeshStructure, Point, check_mesh}
 use bowknot::io::{Import, Mesh, read_mesh};
 use bowknot::simulator::NearStart;
 use bowknot::{Scene, SceneInfo, SimulationError, Simulator, World};
+use bowknot_errors::counted;
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Counts and size of a scene or a mesh. The extent of a mesh is in the unit of its file unless that is
@@ -31,6 +32,9 @@ struct Info {
     near_starts: Vec<NearStart>,
     #[serde(skip)]
     has_unit: bool,
+    /// Number of vertices of each group of a mesh.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    groups: BTreeMap<String, usize>,
     /// A scene has none.
     #[serde(flatten)]
     surface: Option<Surface>,
@@ -94,6 +98,7 @@ fn of_counts(info: SceneInfo, near_starts: Vec<NearStart>) -> Info {
         extent: info.extent,
         near_starts,
         has_unit: true,
+        groups: BTreeMap::new(),
         surface: None,
     }
 }
@@ -146,6 +151,7 @@ fn info_of_mesh(mesh: Mesh, problems: Vec<String>) -> Info {
         extent: extent(&mesh.positions),
         near_starts: Vec::new(),
         has_unit: false,
+        groups: mesh.groups.iter().map(|(name, vertices)| (name.to_owned(), vertices.len())).collect(),
         surface: Some(Surface { structure: MeshStructure::new(&mesh.positions, &mesh.triangles), problems }),
     }
 }
@@ -190,6 +196,9 @@ fn to_text(name: &str, info: &Info, list: usize) -> String {
     let unit = if info.has_unit { "m" } else { "(units of the file)" };
     line("extent", format!("{x:.4} x {y:.4} x {z:.4} {unit}"));
     lines.extend(near_starts::line(&info.near_starts).map(|text| format!("  {text}")));
+    let groups =
+        info.groups.iter().map(|(name, &count)| format!("{name}: {}", counted(count, "vertex", "vertices")));
+    lines.extend(section("groups", &groups.collect::<Vec<_>>(), list));
     if let Some(surface) = &info.surface {
         lines.extend(surface_lines(surface, list));
     }
@@ -213,21 +222,26 @@ fn surface_lines(surface: &Surface, list: usize) -> Vec<String> {
     let border = |border: &bowknot::geometry::MeshBorder| {
         format!("{} edges, from vertex {} at {}", border.edges, border.vertex, place(&border.place))
     };
-    let mut lines = Vec::new();
-    let mut section = |what: &str, entries: Vec<String>| {
-        if !entries.is_empty() {
-            lines.push(format!("  {what:<18} {}", entries.len()));
-            lines.extend(entries.iter().take(list).map(|entry| format!("    {entry}")));
-            if entries.len() > list {
-                lines.push(format!("    and {} more", entries.len() - list));
-            }
-        }
-    };
-    section("connected parts", parts.iter().map(part).collect());
-    section("borders", borders.iter().map(border).collect());
-    section("edges of three or more triangles", branching_edges.iter().map(edge).collect());
-    section("edges whose triangles face opposite ways", flipped_edges.iter().map(edge).collect());
-    section("problems, for which `run` refuses the mesh as a body", surface.problems.clone());
+    let sections: [(&str, Vec<String>); 5] = [
+        ("connected parts", parts.iter().map(part).collect()),
+        ("borders", borders.iter().map(border).collect()),
+        ("edges of three or more triangles", branching_edges.iter().map(edge).collect()),
+        ("edges whose triangles face opposite ways", flipped_edges.iter().map(edge).collect()),
+        ("problems, for which `run` refuses the mesh as a body", surface.problems.clone()),
+    ];
+    sections.iter().flat_map(|(what, entries)| section(what, entries, list)).collect()
+}
+
+/// How many entries there are, and the first `list` of them; nothing if there are none.
+fn section(what: &str, entries: &[String], list: usize) -> Vec<String> {
+    if entries.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = vec![format!("  {what:<18} {}", entries.len())];
+    lines.extend(entries.iter().take(list).map(|entry| format!("    {entry}")));
+    if entries.len() > list {
+        lines.push(format!("    and {} more", entries.len() - list));
+    }
     lines
 }
 

@@ -58,12 +58,33 @@ impl Import {
         }
         Ok(())
     }
+
+    /// As [`Self::point`].
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, or overflow when scaled.
+    pub(crate) fn finite_point(&self, raw: [f64; 3]) -> Result<Point, String> {
+        let point = self.point(raw);
+        match point.iter().all(|c| c.is_finite()) {
+            true => Ok(point),
+            false if raw.iter().all(|c| c.is_finite()) => {
+                Err(format!("a coordinate overflows when scaled by {}", self.scale))
+            }
+            false => Err(format!("coordinates {raw:?} are not finite")),
+        }
+    }
 }
 
 impl Parameters for Import {
     fn check(&self, checks: &mut Checks) {
         checks.positive("scale", self.scale);
     }
+}
+
+/// The bytes of a file that is to be imported like this.
+pub(crate) fn read_bytes(path: &Path, import: &Import) -> Result<Vec<u8>, IoError> {
+    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
+    std::fs::read(path).map_err(|source| IoError::system("read", path, source))
 }
 
 /// A text without the byte order mark that some editors put before it.

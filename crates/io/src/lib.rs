@@ -9,11 +9,14 @@
 //! numbers that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests.
 
 mod atomic;
+mod elements;
 mod error;
 mod folder;
 mod frame_source;
 mod gltf;
+mod groups;
 mod import;
+mod medit;
 mod mesh;
 mod msh;
 #[cfg(feature = "npz")]
@@ -23,8 +26,10 @@ mod obj;
 mod pc2;
 mod ply;
 mod read;
+mod stl;
 mod surface;
 mod tet_list;
+mod tetgen;
 mod transform;
 mod usd;
 mod vtu;
@@ -37,6 +42,7 @@ pub use error::{IoError, Place};
 pub use folder::files_in;
 pub use frame_source::{FrameOptions, FrameSource};
 pub use gltf::{GltfBody, write_glb};
+pub use groups::Groups;
 pub use import::{Import, Up};
 pub use mesh::{Mesh, MeshView};
 pub use msh::write_msh;

@@ -1,5 +1,6 @@
 //! A mesh as files hold it, whatever their format.
 
+use crate::groups::Groups;
 use crate::surface::Surface;
 use bowknot_geometry::{Point, UnionFind, boundary_triangles};
 
@@ -26,8 +27,10 @@ pub struct Mesh {
     /// bodies.
     pub names: Vec<String>,
     /// The polygons whose fans are the triangles, and what modeling tools say about them; none if the file
-    /// has nameless triangles only, or is neither OBJ nor PLY.
+    /// has nameless triangles only.
     pub surface: Option<Surface>,
+    /// Named sets of vertices, if the file has some.
+    pub groups: Groups,
 }
 
 /// A mesh to be written, borrowed from wherever it lives.
@@ -157,6 +160,7 @@ impl Mesh {
         if let Some(body) = &mut self.body {
             retain(body, &keep);
         }
+        self.groups.renumber(|v| keep[v as usize].then_some(renumbered[v as usize]));
         unused.len()
     }
 

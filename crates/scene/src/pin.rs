@@ -3,10 +3,13 @@
 use crate::motion::Motion;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Point;
-use serde::{Deserialize, Serialize};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 
 /// Vertices of a body that are held or led, `[[pin]]`. The vertices are those of all selectors given
-/// (`vertices`, `box`, `side`, `roots`). While an obstacle or another body is in the way they wait, as one.
+/// (`vertices`, `group`, `box`, `side`, `roots`). While an obstacle or another body is in the way they wait, as one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PinSpec {
@@ -15,6 +18,10 @@ pub struct PinSpec {
     /// Vertices by index in the body's mesh, from 0; of quadratic elements also the middles of edges between
     /// them. Default none.
     pub vertices: Vec<u32>,
+    /// Name of a group of vertices of the body's mesh file, or a list of names, as `bowknot info MESH` lists
+    /// them; of quadratic elements also the middles of edges between them. Default none.
+    #[serde(deserialize_with = "one_or_more")]
+    pub group: Vec<String>,
     /// Vertices within an axis-aligned box of the scene at its start. Default none.
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
     pub region: Option<Region>,
@@ -114,6 +121,7 @@ impl Default for PinSpec {
         Self {
             body: String::new(),
             vertices: Vec::new(),
+            group: Vec::new(),
             region: None,
             side: None,
             roots: 0,
@@ -128,8 +136,9 @@ impl Default for PinSpec {
 
 impl Parameters for PinSpec {
     fn check(&self, checks: &mut Checks) {
-        if self.vertices.is_empty() && self.region.is_none() && self.side.is_none() && self.roots == 0 {
-            checks.contradiction("vertices", "a pin needs vertices, a box, a side or roots");
+        let has_names = !self.vertices.is_empty() || !self.group.is_empty();
+        if !has_names && self.region.is_none() && self.side.is_none() && self.roots == 0 {
+            checks.contradiction("vertices", "a pin needs vertices, a group, a box, a side or roots");
         }
         if let Some(region) = self.region {
             // Not by `<`, which is false for NaN.
@@ -147,4 +156,27 @@ impl Parameters for PinSpec {
             checks.within("motion", motion);
         }
     }
+}
+
+/// Reads a name as the list of it alone.
+fn one_or_more<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<String>, D::Error> {
+    struct Names;
+
+    impl<'de> Visitor<'de> for Names {
+        type Value = Vec<String>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            write!(f, "a name or a list of names")
+        }
+
+        fn visit_str<E: de::Error>(self, name: &str) -> Result<Self::Value, E> {
+            Ok(vec![name.to_owned()])
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, names: A) -> Result<Self::Value, A::Error> {
+            Vec::deserialize(SeqAccessDeserializer::new(names))
+        }
+    }
+
+    deserializer.deserialize_any(Names)
 }

@@ -143,7 +143,7 @@ impl<'a> References<'a> {
 }
 
 /// Says that there is nothing of a name, what there is, and which of it may have been meant.
-fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
     let hint = nearest(name, known.iter().copied());
     let hint = hint.map_or_else(String::new, |name| format!("; did you mean {name}?"));

@@ -44,6 +44,7 @@ pub(super) fn weld(mesh: &mut Mesh, vertices: &[u32], distance: f64, report: &mu
     mesh.tets.iter_mut().flatten().for_each(rename);
     mesh.strands.iter_mut().flatten().for_each(rename);
     mesh.particles.iter_mut().for_each(rename);
+    mesh.groups.renumber(|v| Some(representative[v as usize]));
     if let Some(surface) = &mut mesh.surface {
         surface.renumber(|v| representative[v as usize]);
     }

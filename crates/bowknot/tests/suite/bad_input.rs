@@ -114,6 +114,41 @@ fn pins_name_vertices_of_the_file() {
 }
 
 #[test]
+fn pins_name_groups_of_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mesh = format!("v 9 9 9\n{SQUARE}f 2 3 4\ng left hem\nf 2 4 5\ng dots\np 1\n");
+    fs::write(folder.path().join("mesh.obj"), mesh).expect("a mesh");
+    let body = "[[body]]\nname = \"cloth\"\nmesh = \"mesh.obj\"\n[[pin]]\nstart = 0\n";
+    let world = |selectors: &str| {
+        let text = format!("{body}{selectors}\n");
+        Scene::from_toml(&text, folder.path()).and_then(|scene| World::new(&scene)).map_err(|e| e.to_string())
+    };
+    let held = |selectors: &str| world(selectors).expect("a world").pins[0].vertices.clone();
+    // Vertex 0 of the mesh belongs to no triangle.
+    assert_eq!(held("group = \"hem\""), [0, 2, 3]);
+    assert_eq!(held("group = [\"dots\", \"left\"]"), [0, 2, 3]);
+    assert_eq!(held("group = \"hem\"\nvertices = [2]"), [0, 1, 2, 3]);
+    for (selectors, says) in [
+        (
+            "group = \"hen\"",
+            "scene.toml:6: pin[0] of cloth: no group \"hen\"; there are: dots, hem, left; did you mean hem?",
+        ),
+        ("group = \"dots\"", "scene.toml:4: pin[0] of cloth: it selects no vertex of the body"),
+        ("group = 3", "scene.toml:6: pin[0].group: must be a name or a list of names, not the number 3"),
+        ("group = [3]", "scene.toml:6: pin[0].group: must be a string, not an array with the number 3"),
+        ("group = []", "a pin needs vertices, a group, a box, a side or roots"),
+    ] {
+        let error = world(selectors).expect_err(selectors);
+        assert!(error.contains(says), "{selectors}: {error}");
+    }
+    let sheet = "[[body]]\nname = \"sheet\"\nshape = { type = \"sheet\", edge = 0.5 }\n";
+    assert_eq!(
+        refusal(&format!("{sheet}[[pin]]\ngroup = \"hem\"\n")),
+        "scene.toml:5: pin[0] of sheet: no group \"hem\": the mesh of body sheet has no groups"
+    );
+}
+
+#[test]
 fn pins_must_select_and_not_quarrel() {
     let sheet = "[[body]]\nname = \"sheet\"\nshape = { type = \"sheet\", edge = 0.5 }\n";
     assert_eq!(

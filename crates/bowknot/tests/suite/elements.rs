@@ -59,16 +59,20 @@ fn elements_are_chosen_where_the_scene_does_not() {
     assert_eq!(quadratic(&cantilever(0.2, 0.2, "")), (6, 0, 8));
 }
 
-/// A row of cubes, each of six tetrahedra, as a Gmsh file.
+/// A row of cubes, each of six tetrahedra, as a Gmsh file. The group `end` is the face at x = 0.
 fn row_of_cubes(count: usize) -> String {
     let corner = |k: usize| (k / 4, k / 2 % 2, k % 2);
-    let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", 4 * (count + 1));
+    let mut text = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 7 \"end\"\n$EndPhysicalNames\n$Nodes\n{}\n",
+        4 * (count + 1)
+    );
     for k in 0..4 * (count + 1) {
         let (x, y, z) = corner(k);
         writeln!(text, "{} {} {} {}", k + 1, 0.02 * x as f64, 0.02 * y as f64, 0.02 * z as f64)
             .expect("memory");
     }
-    write!(text, "$EndNodes\n$Elements\n{}\n", 6 * count).expect("memory");
+    write!(text, "$EndNodes\n$Elements\n{}\n998 2 2 7 1 1 2 4\n999 2 2 7 1 1 4 3\n", 6 * count + 2)
+        .expect("memory");
     for cube in 0..count {
         for (k, [a, b]) in [[1, 3], [3, 2], [2, 6], [6, 4], [4, 5], [5, 1]].into_iter().enumerate() {
             let [p, q, r, s] = [0, a, b, 7].map(|c| 4 * cube + c + 1);
@@ -82,16 +86,17 @@ fn row_of_cubes(count: usize) -> String {
 fn a_thin_mesh_is_named_and_keeps_its_vertices() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("row.msh"), row_of_cubes(8)).expect("a file");
-    let world = |keys: &str| {
+    let pinned_world = |keys: &str, selector: &str| {
         let text = format!(
             "body = [{{ name = \"row\", kind = \"solid\", mesh = \"row.msh\" {keys} }}]\n\
-             [[pin]]\nbody = \"row\"\nvertices = [0, 1, 2, 3]\n"
+             [[pin]]\nbody = \"row\"\n{selector}\n"
         );
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, text).expect("a file");
         let scene = bowknot::Scene::open(path.to_str().expect("a path"), None, &[""; 0]).expect("a scene");
         World::new(&scene).unwrap_or_else(|error| panic!("{error}"))
     };
+    let world = |keys: &str| pinned_world(keys, "vertices = [0, 1, 2, 3]");
     let plain = world("");
     assert_eq!((plain.positions.len(), plain.bodies[0].quadratic_tets.len()), (36, 0));
     assert!(
@@ -113,6 +118,11 @@ fn a_thin_mesh_is_named_and_keeps_its_vertices() {
     let pinned: Vec<Point> =
         quadratic.pins[0].vertices.iter().map(|&v| quadratic.positions[v as usize]).collect();
     assert!(pinned.len() == 9 && pinned.iter().all(|p| p.x == 0.0), "{pinned:?}");
+    let grouped = pinned_world(", elements = \"quadratic\"", "group = \"end\"");
+    assert_eq!(grouped.pins, quadratic.pins);
+    let mixed = pinned_world(", elements = \"quadratic\"", "group = [\"end\"]\nvertices = [4, 5, 6, 7]");
+    // 8 vertices of the first cube with the middles of its 19 edges.
+    assert_eq!(mixed.pins[0].vertices.len(), 27);
     let number = |v: u32| quadratic.bodies[0].mesh_number(v) as usize;
     for v in (0..quadratic.positions.len() as u32).filter(|&v| number(v) < 36) {
         let k = number(v);

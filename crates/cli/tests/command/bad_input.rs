@@ -158,8 +158,8 @@ fn meshes_that_cannot_be_read() {
                element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n";
     with_mesh(&place, "body", "mesh.ply", ply);
     place.run("run scene.toml").refused(2, &["mesh.ply", "truncated"]);
-    with_mesh(&place, "body", "mesh.stl", "solid");
-    place.run("run scene.toml").refused(2, &["mesh.stl", "only .obj, .ply"]);
+    with_mesh(&place, "body", "mesh.xyz", "solid");
+    place.run("run scene.toml").refused(2, &["mesh.xyz", "only .obj, .ply"]);
 }
 
 #[test]

@@ -1,23 +1,12 @@
 //! The elements of a Gmsh file.
 
 use super::cursor::{Cursor, Fault};
+use super::groups::PhysicalGroups;
 use super::nodes::Nodes;
 use super::version::Version;
-use crate::mesh::Mesh;
+use crate::elements::{self, Becomes};
 use bowknot_errors::counted;
-use bowknot_geometry::Point;
 use std::collections::BTreeMap;
-
-/// What an element of some type becomes; its corners come first among its nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Becomes {
-    Point,
-    Line,
-    Triangle,
-    Quad,
-    Tet,
-    Nothing,
-}
 
 /// Number of an element type, its nodes, what it becomes, its name in the plural. Gmsh reference manual, "MSH
 /// file format", and `GmshDefines.h` for the numbers that the manual leaves out.
@@ -60,13 +49,11 @@ const TYPES: [(i64, usize, Becomes, &str); 33] = [
 /// Most tags that an element of version 2 can reasonably have; Gmsh writes 2 and, for partitions, some more.
 const MOST_TAGS: i64 = 1 << 16;
 
-/// Elements by what they become, as vertex indices, boundary elements included.
+/// Elements, the physical groups that they belong to, and what was not taken as it is.
 #[derive(Default)]
 pub(super) struct Elements {
-    tets: Vec<[u32; 4]>,
-    triangles: Vec<[u32; 3]>,
-    lines: Vec<[u32; 2]>,
-    points: Vec<u32>,
+    pub taken: elements::Elements,
+    pub groups: PhysicalGroups,
     /// Number of elements of each type that was skipped or reduced to its corners.
     noted: BTreeMap<i64, usize>,
 }
@@ -84,8 +71,13 @@ enum Reading {
 
 impl Elements {
     /// Reads the content of `$Elements`.
-    pub(super) fn read(cursor: &mut Cursor<'_>, version: Version, nodes: &Nodes) -> Result<Self, Fault> {
-        let mut elements = Self::default();
+    pub(super) fn read(
+        cursor: &mut Cursor<'_>,
+        version: Version,
+        nodes: &Nodes,
+        groups: PhysicalGroups,
+    ) -> Result<Self, Fault> {
+        let mut elements = Self { groups, ..Self::default() };
         match version {
             Version::V2 if cursor.is_binary() => elements.read_v2_binary(cursor, nodes)?,
             Version::V2 => elements.read_v2_text(cursor, nodes)?,
@@ -102,8 +94,9 @@ impl Elements {
             match self.reading(cursor, kind)? {
                 Reading::Known { nodes: size, becomes } => {
                     let tags = cursor.integer("the number of tags")?;
-                    skip_tags(cursor, tags)?;
-                    self.element(cursor, nodes, size, becomes, Cursor::integer)?;
+                    let group = first_tag(cursor, tags)?;
+                    let corners = self.element(cursor, nodes, size, becomes, Cursor::integer)?;
+                    self.add_to_group(becomes, group, &corners);
                 }
                 Reading::Unknown => drop(cursor.line()),
             }
@@ -129,8 +122,9 @@ impl Elements {
             cursor.expect(following as u64, 1 + size as u64, "elements")?;
             for _ in 0..following {
                 cursor.integer("a number")?;
-                skip_tags(cursor, tags)?;
-                self.element(cursor, nodes, size, becomes, Cursor::integer)?;
+                let group = first_tag(cursor, tags)?;
+                let corners = self.element(cursor, nodes, size, becomes, Cursor::integer)?;
+                self.add_to_group(becomes, group, &corners);
                 self.note(kind);
             }
             read += following;
@@ -145,8 +139,9 @@ impl Elements {
         let (_, _) = (cursor.count("the smallest element")?, cursor.count("the largest element")?);
         let mut read = 0;
         for _ in 0..blocks {
-            cursor.integer("an entity's dimension")?;
-            cursor.integer("an entity's number")?;
+            let dimension = cursor.integer("an entity's dimension")?;
+            let entity = cursor.integer("an entity's number")?;
+            let groups = self.groups.of_entity(dimension, entity);
             let kind = cursor.integer("an element's type")?;
             let count = cursor.count("the number of elements of a block")?;
             let count = cursor.expect(count, 2, "elements")?;
@@ -158,9 +153,10 @@ impl Elements {
                 Reading::Known { nodes: size, becomes } => {
                     for _ in 0..count {
                         cursor.count("an element's number")?;
-                        self.element(cursor, nodes, size, becomes, |cursor, what| {
+                        let corners = self.element(cursor, nodes, size, becomes, |cursor, what| {
                             Ok(i64::try_from(cursor.count(what)?).unwrap_or(i64::MAX))
                         })?;
+                        groups.iter().for_each(|&group| self.add_to_group(becomes, group, &corners));
                         self.note(kind);
                     }
                 }
@@ -192,6 +188,7 @@ impl Elements {
         }
     }
 
+    /// Takes an element. Returns its vertices, the corners first.
     fn element<'a>(
         &mut self,
         cursor: &mut Cursor<'a>,
@@ -199,7 +196,7 @@ impl Elements {
         size: usize,
         becomes: Becomes,
         read: impl Fn(&mut Cursor<'a>, &str) -> Result<i64, Fault>,
-    ) -> Result<(), Fault> {
+    ) -> Result<[u32; 4], Fault> {
         let mut corners = [0; 4];
         for k in 0..size {
             let number = read(cursor, "a node's number")?;
@@ -210,16 +207,19 @@ impl Elements {
                 *corner = index;
             }
         }
-        let [i, j, k, l] = corners;
-        match becomes {
-            Becomes::Point => self.points.push(i),
-            Becomes::Line => self.lines.push([i, j]),
-            Becomes::Triangle => self.triangles.push([i, j, k]),
-            Becomes::Quad => self.triangles.extend([[i, j, k], [i, k, l]]),
-            Becomes::Tet => self.tets.push(corners),
-            Becomes::Nothing => {}
-        }
-        Ok(())
+        self.taken.add(becomes, &corners);
+        Ok(corners)
+    }
+
+    fn add_to_group(&mut self, becomes: Becomes, group: i64, corners: &[u32; 4]) {
+        let dimension = match becomes {
+            Becomes::Point => 0,
+            Becomes::Line => 1,
+            Becomes::Triangle | Becomes::Quad => 2,
+            Becomes::Tet => 3,
+            Becomes::Nothing => return,
+        };
+        self.groups.add(dimension, group, &corners[..becomes.corners()]);
     }
 
     /// Counts what is not taken as it is.
@@ -228,10 +228,6 @@ impl Elements {
         if !is_plain {
             *self.noted.entry(kind).or_default() += 1;
         }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.tets.is_empty() && self.triangles.is_empty() && self.lines.is_empty() && self.points.is_empty()
     }
 
     /// What was skipped or reduced to its corners, in words.
@@ -243,35 +239,6 @@ impl Elements {
         };
         self.noted.iter().map(note).collect()
     }
-
-    /// The mesh, without elements that are the boundary of others.
-    pub(super) fn into_mesh(self, positions: Vec<Point>) -> Mesh {
-        fn sorted<const N: usize>(mut element: [u32; N]) -> [u32; N] {
-            element.sort_unstable();
-            element
-        }
-        fn unique<const N: usize>(elements: impl Iterator<Item = [u32; N]>) -> Vec<[u32; N]> {
-            let mut elements: Vec<[u32; N]> = elements.map(sorted).collect();
-            elements.sort_unstable();
-            elements.dedup();
-            elements
-        }
-        let Self { tets, mut triangles, mut lines, mut points, .. } = self;
-
-        let faces =
-            unique(tets.iter().flat_map(|&[i, j, k, l]| [[i, j, k], [i, j, l], [i, k, l], [j, k, l]]));
-        triangles.retain(|&triangle| faces.binary_search(&sorted(triangle)).is_err());
-
-        let edges_of = |&[i, j, k]: &[u32; 3]| [[i, j], [j, k], [k, i]];
-        let edges = unique(faces.iter().chain(&triangles).flat_map(edges_of));
-        lines.retain(|&line| edges.binary_search(&sorted(line)).is_err());
-
-        let mut used = vec![false; positions.len()];
-        edges.iter().chain(&lines).flatten().for_each(|&v| used[v as usize] = true);
-        points.retain(|&v| !std::mem::replace(&mut used[v as usize], true));
-
-        Mesh { positions, tets, triangles, strands: lines, particles: points, ..Mesh::default() }
-    }
 }
 
 fn element_count(cursor: &mut Cursor<'_>) -> Result<usize, Fault> {
@@ -281,9 +248,17 @@ fn element_count(cursor: &mut Cursor<'_>) -> Result<usize, Fault> {
     cursor.expect(count, 2, "elements")
 }
 
-fn skip_tags(cursor: &mut Cursor<'_>, tags: i64) -> Result<(), Fault> {
+/// The first tag of an element, its physical group; the others are skipped.
+fn first_tag(cursor: &mut Cursor<'_>, tags: i64) -> Result<i64, Fault> {
     if !(0..=MOST_TAGS).contains(&tags) {
         return Err(cursor.fault_before(format!("{tags} tags; from 0 to {MOST_TAGS} are possible")));
     }
-    (0..tags).try_for_each(|_| cursor.integer("a tag").map(drop))
+    let mut first = 0;
+    for index in 0..tags {
+        let tag = cursor.integer("a tag")?;
+        if index == 0 {
+            first = tag;
+        }
+    }
+    Ok(first)
 }

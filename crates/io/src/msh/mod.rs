@@ -1,11 +1,12 @@
 //! Gmsh `.msh`, versions 2.2 and 4.1, text and binary: tetrahedra, triangles, lines and points.
 //!
 //! Source: the Gmsh reference manual, "Gmsh file formats" (MSH 4.1 and the legacy MSH 2). A file is a
-//! sequence of sections `$Name` .. `$EndName`; those that are not about nodes or elements (entities, physical
-//! names, data, other programs' own) are skipped.
+//! sequence of sections `$Name` .. `$EndName`; those that are not about nodes, elements or physical groups
+//! (data, partitions, other programs' own) are skipped.
 
 mod cursor;
 mod elements;
+mod groups;
 mod nodes;
 mod version;
 mod write;
@@ -19,6 +20,7 @@ use crate::mesh::Mesh;
 use bowknot_errors::Parameters;
 use cursor::{Cursor, Fault};
 use elements::Elements;
+use groups::PhysicalGroups;
 use nodes::Nodes;
 use std::fs;
 use std::path::Path;
@@ -28,7 +30,7 @@ pub use write::write_msh;
 
 /// Reads a Gmsh file: tetrahedra, triangles and quadrilaterals (as two triangles), lines as strands, points
 /// as particles; of higher-order elements their corners. Node numbers may be any, vertices are numbered in
-/// the order of the file. Physical groups are ignored.
+/// the order of the file. [`Mesh::groups`] has the vertices of each physical group.
 ///
 /// Gmsh writes the boundary of a volume or surface as elements of their own. A triangle that is a face of a
 /// tetrahedron, a line that is an edge of either, and a point that is a vertex of any of these are therefore
@@ -64,6 +66,7 @@ fn parse(bytes: &[u8], import: &Import) -> Result<(Mesh, Vec<String>), Fault> {
     }
     let version = format(&mut cursor)?;
     let (mut nodes, mut elements) = (None, None);
+    let mut groups = PhysicalGroups::default();
     while let Some(name) = cursor.section()? {
         match name.as_str() {
             "Nodes" if nodes.is_some() => {
@@ -80,7 +83,15 @@ fn parse(bytes: &[u8], import: &Import) -> Result<(Mesh, Vec<String>), Fault> {
                 let Some(nodes) = &nodes else {
                     return Err(cursor.fault("the elements stand before the nodes: save it with Gmsh again"));
                 };
-                elements = Some(Elements::read(&mut cursor, version, nodes)?);
+                elements = Some(Elements::read(&mut cursor, version, nodes, std::mem::take(&mut groups))?);
+                cursor.end(&name)?;
+            }
+            "PhysicalNames" => {
+                groups.read_names(&mut cursor)?;
+                cursor.end(&name)?;
+            }
+            "Entities" if version == Version::V4 => {
+                groups.read_entities(&mut cursor)?;
                 cursor.end(&name)?;
             }
             _ => cursor.skip_section(&name)?,
@@ -90,13 +101,14 @@ fn parse(bytes: &[u8], import: &Import) -> Result<(Mesh, Vec<String>), Fault> {
     let nodes = nodes.ok_or_else(|| (Place::File, "it has no nodes".to_owned()))?;
     let elements = elements.unwrap_or_default();
     let notes = elements.notes();
-    if elements.is_empty() {
+    if elements.taken.is_empty() {
         let notes = if notes.is_empty() { String::new() } else { format!(" ({})", notes.join("; ")) };
         let message =
             format!("no tetrahedra, triangles, lines or points in it{notes}: mesh it with tetrahedra");
         return Err((Place::File, message));
     }
-    Ok((elements.into_mesh(nodes.positions), notes))
+    let groups = elements.groups.into_groups();
+    Ok((elements.taken.into_mesh(nodes.positions, groups), notes))
 }
 
 /// Reads the content of `$MeshFormat`: version, text or binary, sizes and byte order.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::groups::Groups;
 use bowknot_geometry::Point;
 
 /// One entry per element: its type, its node numbers.
@@ -45,12 +46,26 @@ fn elements() -> Vec<Element> {
 }
 
 fn expected() -> Mesh {
+    let mut groups = Groups::default();
+    groups.add("caf\u{fffd} $Nodes", [0, 1, 2, 4, 5, 6]);
+    groups.add("point-7", [0, 7]);
     Mesh {
+        groups,
         positions: nodes().into_iter().map(|(_, p)| Point::from(p)).collect(),
         tets: vec![[0, 1, 2, 3]],
         triangles: vec![[4, 5, 6]],
         strands: vec![[6, 7]],
         ..Mesh::default()
+    }
+}
+
+/// The physical group of the elements of a type, negative for a reversed orientation, and its dimension.
+fn physical(kind: i64) -> (i64, i64) {
+    match kind {
+        15 => (7, 0),
+        1 | 8 => (0, 1),
+        2 | 9 => (-1, 2),
+        _ => (0, 3),
     }
 }
 
@@ -87,6 +102,24 @@ fn file(form: Form, nodes: &[(i64, [f64; 3])], elements: &[Element]) -> Vec<u8> 
         }
     };
 
+    if !v2 {
+        // One entity of each dimension, number 1, the last three with two entities as their boundary.
+        out.extend(b"$Entities\n");
+        (0..4).for_each(|_| count(&mut out, 1));
+        newline(&mut out);
+        for (dimension, groups) in [(0, &[7][..]), (1, &[]), (2, &[-1]), (3, &[])] {
+            int(&mut out, 1);
+            (0..if dimension == 0 { 3 } else { 6 }).for_each(|_| number(&mut out, 0.5));
+            count(&mut out, groups.len() as i64);
+            groups.iter().for_each(|group| int(&mut out, *group));
+            if dimension > 0 {
+                count(&mut out, 2);
+                [1, -1].iter().for_each(|n| int(&mut out, *n));
+            }
+            newline(&mut out);
+        }
+        out.extend(if binary { &b"\n$EndEntities\n"[..] } else { b"$EndEntities\n" });
+    }
     out.extend(b"$Nodes\n");
     if v2 {
         out.extend(format!("{}\n", nodes.len()).bytes());
@@ -121,11 +154,12 @@ fn file(form: Form, nodes: &[(i64, [f64; 3])], elements: &[Element]) -> Vec<u8> 
     }
     for (index, (kind, corners)) in elements.iter().enumerate() {
         let tag = index as i64 + 1;
+        let (group, dimension) = physical(*kind);
         match form {
-            Form::Text2 => [tag, *kind, 2, 0, 5].iter().for_each(|n| int(&mut out, *n)),
-            Form::Binary2 => [*kind, 1, 2, tag, 0, 5].iter().for_each(|n| int(&mut out, *n)),
+            Form::Text2 => [tag, *kind, 2, group, 5].iter().for_each(|n| int(&mut out, *n)),
+            Form::Binary2 => [*kind, 1, 2, tag, group, 5].iter().for_each(|n| int(&mut out, *n)),
             _ => {
-                [3, 1, *kind].iter().for_each(|n| int(&mut out, *n));
+                [dimension, 1, *kind].iter().for_each(|n| int(&mut out, *n));
                 count(&mut out, 1);
                 newline(&mut out);
                 count(&mut out, tag);
@@ -232,9 +266,22 @@ fn faults_name_the_line_and_the_remedy() {
         (Form::Text4, "$MeshFormat\n4.1", "$MeshFromat\n4.1", "mesh.msh: not a Gmsh file"),
         (Form::Text4, "4.1 0 8", "4.0 0 8", "mesh.msh:2: version 4.0 is not read, only 2.2 and 4.1: convert"),
         (Form::Text4, "4.1 0 8", "4.1 7 8", "mesh.msh:2: the line must say 0 (text) or 1 (binary)"),
-        (Form::Text4, "$Nodes\n2 ", "$Nodes\n-2 ", "mesh.msh:9: '-2' is not the number of blocks"),
-        (Form::Text4, "2 8 1 99", "2 8000000 1 99", "mesh.msh:9: truncated: 8000000 nodes are declared"),
-        (Form::Text4, "2 8 1 99", "2 99999999999 1 99", "mesh.msh:9: 99999999999 nodes; at most"),
+        (
+            Form::Text4,
+            "2 1 \"",
+            "2 x \"",
+            "mesh.msh:6: '2 x \"caf\u{fffd} $Nodes\"' is not a dimension, a number",
+        ),
+        (Form::Text4, "$Entities\n1 ", "$Entities\n2 ", "'0.5' is not the number of physical groups"),
+        (
+            Form::Text4,
+            "0.5 1 7 ",
+            "0.5 99999999 7 ",
+            "mesh.msh:10: truncated: 99999999 physical groups are declared",
+        ),
+        (Form::Text4, "$Nodes\n2 ", "$Nodes\n-2 ", "mesh.msh:16: '-2' is not the number of blocks"),
+        (Form::Text4, "2 8 1 99", "2 8000000 1 99", "mesh.msh:16: truncated: 8000000 nodes are declared"),
+        (Form::Text4, "2 8 1 99", "2 99999999999 1 99", "mesh.msh:16: 99999999999 nodes; at most"),
         (Form::Text4, "2 8 1 99", "2 7 1 99", "more nodes than the 7 declared"),
         (Form::Text4, "2 8 1 99", "2 9 1 99", "8 of the 9 declared nodes"),
         (Form::Text4, "2 8 1 99", "3 8 1 99", "the section ends where an entity's dimension is expected"),
@@ -243,9 +290,9 @@ fn faults_name_the_line_and_the_remedy() {
             Form::Text4,
             "1.0 0.0 0.0",
             "1.0 inf 0.0",
-            "mesh.msh:15: coordinates [1.0, inf, 0.0] of node 3 are not",
+            "mesh.msh:22: coordinates [1.0, inf, 0.0] of node 3 are not",
         ),
-        (Form::Text4, "1.0 0.0 0.0", "1.0 x 0.0", "mesh.msh:15: 'x' is not a coordinate"),
+        (Form::Text4, "1.0 0.0 0.0", "1.0 x 0.0", "mesh.msh:22: 'x' is not a coordinate"),
         (Form::Text4, "7 7 1 99", "7 8 1 99", "7 of the 8 declared elements"),
         (Form::Text4, "7 7 1 99", "7 6 1 99", "more elements than the 6 declared"),
         (Form::Text4, "7 7 3 50 51", "7 7 3 50 52", "names node 52, which $Nodes does not have"),

@@ -1,6 +1,7 @@
 //! From the statements about faces to a surface.
 
 use super::library;
+use crate::groups::Groups;
 use crate::surface::{Corner, Labels, Surface};
 use std::path::{Path, PathBuf};
 
@@ -57,6 +58,11 @@ impl Faces {
         self.normals.push(normal.map(f64::to_bits));
     }
 
+    /// The groups that hold for what follows.
+    pub fn groups(&self) -> impl Iterator<Item = &str> {
+        names(&self.labels)
+    }
+
     /// Takes a face; `before` are the triangles of the faces before it.
     pub fn face(&mut self, corners: &[Corner], before: &[[u32; 3]]) {
         let is_plain = corners.len() == 3
@@ -93,6 +99,24 @@ impl Faces {
         }
         Some(surface)
     }
+}
+
+/// Adds the vertices of the polygons of each group to `groups`.
+pub(super) fn add_groups(surface: &Surface, groups: &mut Groups) {
+    let mut polygons = surface.polygons().peekable();
+    while let Some(first) = polygons.next() {
+        let mut vertices: Vec<u32> = first.corners.iter().map(|corner| corner.vertex).collect();
+        // Labels are one object as long as they do not change.
+        while let Some(next) = polygons.next_if(|next| std::ptr::eq(next.labels, first.labels)) {
+            vertices.extend(next.corners.iter().map(|corner| corner.vertex));
+        }
+        names(first.labels).for_each(|name| groups.add(name, vertices.iter().copied()));
+    }
+}
+
+/// The groups of labels.
+fn names(labels: &Labels) -> impl Iterator<Item = &str> {
+    labels.group.iter().flat_map(|group| group.split_ascii_whitespace())
 }
 
 /// The corners at each vertex, in compressed rows: those of v are at `starts[v]..starts[v + 1]`.

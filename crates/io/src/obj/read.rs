@@ -1,6 +1,6 @@
 //! Meshes from OBJ and SEG files.
 
-use super::faces::Faces;
+use super::faces::{Faces, add_groups};
 use super::write::{NAMELESS, OBSTACLE_FROM};
 use crate::error::{IoError, Place};
 use crate::import::{Import, without_mark};
@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Reads an OBJ file: vertices, faces (as fans around their first vertex), `l` polylines as strands, `p`
 /// points. Polygons, texture coordinates (the first two numbers), normals, objects, groups, materials and
-/// smoothing groups become [`Mesh::surface`].
+/// smoothing groups become [`Mesh::surface`]. [`Mesh::groups`] has the vertices of each group, `g`.
 ///
 /// Indices count from 1, or backward from the last one read when negative; a `\` at the end of a line
 /// continues it. Two comments count, as [`super::write_obj`] writes them: `# obstacle-from N` makes obstacles
@@ -161,10 +161,12 @@ impl Reader<'_> {
             Some(word) if word == "l" || self.dialect == Dialect::Segments && word == "s" => {
                 let line = self.indices(words, number, "a line", 2)?;
                 self.mesh.strands.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
+                self.faces.groups().for_each(|name| self.mesh.groups.add(name, line.iter().copied()));
                 Ok(())
             }
             Some("p") => {
                 let points = self.indices(words, number, "a point", 1)?;
+                self.faces.groups().for_each(|name| self.mesh.groups.add(name, points.iter().copied()));
                 self.mesh.particles.extend(points);
                 Ok(())
             }
@@ -354,6 +356,9 @@ impl Reader<'_> {
         }
         self.mesh.obstacle = self.obstacle_from.map(|first| (0..count).map(|v| v >= first).collect());
         self.mesh.surface = self.faces.finish(count, self.dialect == Dialect::Ours);
+        if let Some(surface) = &self.mesh.surface {
+            add_groups(surface, &mut self.mesh.groups);
+        }
         Ok(self.mesh)
     }
 

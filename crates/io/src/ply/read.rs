@@ -13,8 +13,9 @@ use std::path::Path;
 
 /// Reads a PLY file: `vertex` (x y z, and `obstacle`, `body` if there), `face` (a list `vertex_indices` or
 /// `vertex_index` of any integer type, as fans around the first vertex), `edge` (`vertex1`, `vertex2`); other
-/// elements and properties are skipped. Vertices of no face and no edge are particles. Names of bodies are
-/// read as [`write_ply`](crate::write_ply) writes them.
+/// elements are skipped. Vertices of no face and no edge are particles. A number of a vertex that is neither
+/// coordinate, normal, color nor texture coordinate is a group: its vertices are those where it is not 0.
+/// Names of bodies are read as [`write_ply`](crate::write_ply) writes them.
 ///
 /// # Errors
 /// A missing, malformed or truncated file, coordinates that are not finite, indices of vertices that do not
@@ -54,11 +55,22 @@ fn parse(bytes: &[u8], import: &Import) -> Result<Mesh, (Place, String)> {
             _ => {}
         }
         let mut sink = Sink::new(element, vertices, import)?;
+        let extra = if element.name == "vertex" { extra_properties(element) } else { Vec::new() };
+        let mut groups = vec![Vec::new(); extra.len()];
         for index in 0..element.count {
             payload.read(element, index, &mut row)?;
             sink.take(&row, &mut mesh).map_err(|message| {
                 (row.place.clone().unwrap_or_else(|| Place::Element(element.name.clone(), index)), message)
             })?;
+            for (group, &property) in groups.iter_mut().zip(&extra) {
+                // NaN says nothing.
+                if row.values[property].abs() > 0.0 {
+                    group.push(index as u32);
+                }
+            }
+        }
+        for (group, property) in groups.into_iter().zip(extra) {
+            mesh.groups.add(&element.properties[property].name, group);
         }
     }
     if mesh.positions.len() < vertices {
@@ -67,6 +79,25 @@ fn parse(bytes: &[u8], import: &Import) -> Result<Mesh, (Place, String)> {
     let used = mesh.used_by_elements();
     mesh.particles = (0..mesh.positions.len() as u32).filter(|&v| !used[v as usize]).collect();
     Ok(mesh)
+}
+
+/// The properties of a vertex that are groups, as their places in the row.
+fn extra_properties(element: &Element) -> Vec<usize> {
+    let is_extra = |&place: &usize| {
+        let property = &element.properties[place];
+        matches!(property.kind, PropertyKind::Scalar(_)) && !is_known(&property.name)
+    };
+    (0..element.properties.len()).filter(is_extra).collect()
+}
+
+/// Whether a property of a vertex is a coordinate, a normal, a color or a texture coordinate, or one of our own.
+fn is_known(name: &str) -> bool {
+    let prefixes = ["normal_", "diffuse_", "ambient_", "specular_", "texture_"];
+    let plain = prefixes.iter().find_map(|prefix| name.strip_prefix(prefix)).unwrap_or(name);
+    let is_place =
+        matches!(plain, "x" | "y" | "z" | "nx" | "ny" | "nz" | "s" | "t" | "u" | "v" | "s0" | "t0");
+    let is_color = matches!(plain, "red" | "green" | "blue" | "alpha" | "r" | "g" | "b" | "a");
+    is_place || is_color || matches!(name, "obstacle" | "body")
 }
 
 /// What becomes of the rows of an element.

@@ -49,6 +49,7 @@ fn sample() -> Mesh {
         body: Some(vec![0, 0, 0, 0, 1, 2]),
         names: vec!["a".to_owned(), "b c".to_owned()],
         surface: None,
+        groups: Groups::default(),
     }
 }
 
@@ -127,8 +128,11 @@ fn unused_vertices_are_dropped_in_order() {
     let mut mesh = sample();
     mesh.triangles = vec![[2, 1, 3]];
     mesh.particles.clear();
+    mesh.groups.add("ends", [5, 0]);
+    mesh.groups.add("edge", [3, 0, 1, 3]);
     assert_eq!(mesh.unused_vertices(), [0, 5]);
     assert_eq!(mesh.drop_unused_vertices(), 2);
+    assert_eq!((mesh.groups.get("ends"), mesh.groups.get("edge")), (Some(&[][..]), Some(&[0, 2][..])));
     assert_eq!((mesh.triangles, mesh.strands), (vec![[1, 0, 2]], vec![[2, 3]]));
     assert_eq!((mesh.positions[2], mesh.body), (Point::new(1.0, 2.0, 3.0), Some(vec![0, 0, 0, 1])));
 }

@@ -73,3 +73,13 @@ fn obj_faults_name_the_line() {
     let text = message(read_obj(&write(&folder, "empty.obj", ""), &Import::default()));
     assert!(text.contains("no vertices"), "{text}");
 }
+
+#[test]
+fn names_of_groups_have_the_vertices_of_their_elements() {
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\ng hem  front\nf 2 5 3\ng\nf 1 3 4\n\
+                g front\nl 4 1\np 5\no body\nf 1 2 4\n";
+    let folder = folder();
+    let mesh = read_obj(&write(&folder, "a.obj", text), &Import::default()).unwrap();
+    let groups: Vec<(&str, &[u32])> = mesh.groups.iter().collect();
+    assert_eq!(groups, [("front", &[0, 1, 2, 3, 4][..]), ("hem", &[1, 2, 4])]);
+}

@@ -140,3 +140,17 @@ fn names_of_bodies_are_comments() {
     let path = write(&folder, "b.ply", other);
     assert_eq!(read_ply(&path, &Import::default()).unwrap().names, ["a"]);
 }
+
+#[test]
+fn other_properties_of_vertices_are_groups() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                property float nx\nproperty uchar red\nproperty uchar hem\nproperty list uchar int weights\n\
+                property double heat\nproperty int none\nelement face 1\nproperty list uchar int vertex_indices\n\
+                property int collar\nend_header\n0 0 0 1 9 0 0 -0.5 0\n1 0 0 1 9 1 2 5 6 nan 0\n0 1 0 1 9 3 0 -0.0 0\n\
+                3 0 1 2 1\n";
+    let folder = folder();
+    let mesh = read_ply(&write(&folder, "a.ply", text), &Import::default()).unwrap();
+    let groups: Vec<(&str, &[u32])> = mesh.groups.iter().collect();
+    assert_eq!(groups, [("heat", &[0][..]), ("hem", &[1, 2]), ("none", &[])]);
+    assert_eq!(mesh.triangles.len(), 1);
+}

@@ -167,7 +167,7 @@ def _three(points: Any) -> Any:
 
 
 def read_mesh(path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0) -> Mesh:
-    """Reads a mesh file: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (``.t``), strand segments (``.seg``).
+    """Reads a mesh file: OBJ, PLY, STL, Gmsh (``.msh``), Medit (``.mesh``), TetGen, VTU, ``.t``, ``.seg``.
 
     Parameters
     ----------

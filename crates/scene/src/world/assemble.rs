@@ -117,6 +117,7 @@ impl Assembly {
             surface: elements.surface,
             motion: ObstacleMotion::Rest,
             presence: Presence::default(),
+            groups: elements.groups,
             numbers: elements.numbers,
             mesh_vertices: elements.mesh_vertices,
         });
@@ -171,6 +172,7 @@ impl Assembly {
             surface: elements.surface,
             motion,
             presence: presence.between(obstacle.appears, obstacle.vanishes),
+            groups: elements.groups,
             numbers: elements.numbers,
             mesh_vertices: elements.mesh_vertices,
         });

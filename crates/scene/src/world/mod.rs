@@ -35,7 +35,7 @@ use crate::kind::BodyKind;
 use crate::motion::Motion;
 use bowknot_dynamics::{Body, DynamicsModel};
 use bowknot_geometry::{BodyFilter, HalfSpace, Point, TETRAHEDRON_EDGES, Vector};
-use bowknot_io::Surface;
+use bowknot_io::{Groups, Surface};
 use bowknot_proximity::CollisionModel;
 use bowknot_twoway::ContactData;
 use rayon::prelude::*;
@@ -93,6 +93,8 @@ pub struct WorldBody {
     pub strands: Vec<[u32; 2]>,
     /// What its mesh says about its faces, over its own vertices: polygons whose fans are its triangles.
     pub surface: Option<Surface>,
+    /// Named sets of vertices, by their numbers in the mesh.
+    pub groups: Groups,
     /// How it moves, if it is an obstacle.
     pub motion: ObstacleMotion,
     /// When it is there, if it is an obstacle.

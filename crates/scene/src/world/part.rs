@@ -11,7 +11,7 @@ use bowknot_geometry::{
     MeshProblem, Point, TetFaults, add_edge_middles, boundary_triangles, check_mesh, check_tets,
     divide_tetrahedron,
 };
-use bowknot_io::{self as io, Import, Mesh, Surface};
+use bowknot_io::{self as io, Groups, Import, Mesh, Surface};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -29,6 +29,8 @@ pub(super) struct Part {
     pub particles: Vec<u32>,
     /// What the mesh says about its faces: polygons whose fans are the triangles.
     pub surface: Option<Surface>,
+    /// Groups of the mesh, by its numbers.
+    pub groups: Groups,
     /// Number in the mesh of each vertex.
     pub numbers: Vec<u32>,
     /// Vertices of the mesh, those left out counted.
@@ -40,7 +42,7 @@ pub(super) struct Part {
 impl Part {
     pub fn from_mesh(mesh: Mesh) -> Self {
         let mesh_vertices = mesh.positions.len();
-        let Mesh { positions, triangles, tets, strands, particles, surface, .. } = mesh;
+        let Mesh { positions, triangles, tets, strands, particles, surface, groups, .. } = mesh;
         let numbers = (0..mesh_vertices as u32).collect();
         Self {
             positions,
@@ -49,6 +51,7 @@ impl Part {
             strands,
             particles,
             surface,
+            groups,
             numbers,
             mesh_vertices,
             ..Self::default()

@@ -7,6 +7,7 @@ use crate::description::Scene;
 use crate::error::SceneError;
 use crate::kind::BodyKind;
 use crate::pin::PinSpec;
+use crate::validate::unknown;
 use bowknot_errors::counted;
 use bowknot_geometry::Point;
 
@@ -20,14 +21,18 @@ pub(super) fn pins(
     let mut pins: Vec<Pin> = Vec::new();
     for (index, spec) in scene.pins.iter().enumerate() {
         let key = format!("pin[{index}]");
-        let fault = |message: String| {
+        let fault_of = |selector: &str, message: String| {
             SceneError::Body { body: format!("{key} of {}", spec.body), message }
-                .at(scene.origins.of([&format!("{key}.vertices"), &key]))
+                .at(scene.origins.of([&format!("{key}.{selector}"), &key]))
         };
+        let fault = |message: String| fault_of("vertices", message);
         let Some(body) = bodies.iter().find(|b| b.kind.is_some() && b.name == spec.body) else {
             return Err(fault(format!("no body {:?}", spec.body)));
         };
-        let mut vertices = pinned(spec, body, surroundings.positions).map_err(fault)?;
+        let mut vertices = numbered(spec, body).map_err(fault)?;
+        vertices.extend(grouped(spec, body).map_err(|message| fault_of("group", message))?);
+        add_middles(body, &mut vertices);
+        vertices.extend(placed(spec, body, surroundings.positions));
         if spec.roots > 0 && body.kind == Some(BodyKind::Strands) {
             let (held, warning) = roots(body, spec.roots, spec.root_end, surroundings);
             vertices.extend(held);
@@ -59,31 +64,56 @@ pub(super) fn pins(
     Ok(pins)
 }
 
-/// The vertices of its other selectors than roots.
-fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u32>, String> {
+/// The vertices with the numbers of the pin.
+fn numbered(spec: &PinSpec, body: &WorldBody) -> Result<Vec<u32>, String> {
+    if spec.vertices.is_empty() {
+        return Ok(Vec::new());
+    }
+    let by_number = body.mesh_order();
+    let vertex = |&v: &u32| match by_number.get(v as usize) {
+        Some(Some(vertex)) => Ok(*vertex),
+        Some(None) => {
+            let element = body.kind.map_or("element", |kind| element_of(kind).0);
+            Err(format!("vertex {v} belongs to no {element} of body {}", spec.body))
+        }
+        None => {
+            let count = counted(body.mesh_vertices, "vertex", "vertices");
+            Err(format!("vertex {v}, but body {} has {count}, counted from 0", spec.body))
+        }
+    };
+    spec.vertices.iter().map(vertex).collect()
+}
+
+/// The vertices of the groups of the pin, but those that belong to no element.
+fn grouped(spec: &PinSpec, body: &WorldBody) -> Result<Vec<u32>, String> {
+    if spec.group.is_empty() {
+        return Ok(Vec::new());
+    }
+    let by_number = body.mesh_order();
+    let mut vertices = Vec::new();
+    for name in &spec.group {
+        let group = body.groups.get(name).ok_or_else(|| match body.groups.is_empty() {
+            true => format!("no group {name:?}: the mesh of body {} has no groups", spec.body),
+            false => unknown("group", name, body.groups.iter().map(|(name, _)| name)),
+        })?;
+        vertices.extend(group.iter().filter_map(|&v| by_number[v as usize]));
+    }
+    Ok(vertices)
+}
+
+/// Adds the middles of edges whose ends are both among the vertices: in the mesh they have no numbers.
+fn add_middles(body: &WorldBody, vertices: &mut Vec<u32>) {
+    vertices.sort_unstable();
+    let is_named = |v: &u32| vertices.binary_search(v).is_ok();
+    let middles = body.middles().filter(|(ends, _)| ends.iter().all(is_named)).map(|(_, middle)| middle);
+    let middles: Vec<u32> = middles.collect();
+    vertices.extend(middles);
+}
+
+/// The vertices in the box and on the side of the pin.
+fn placed(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Vec<u32> {
     let at = |v: u32| &positions[v as usize];
     let mut vertices = Vec::new();
-    if !spec.vertices.is_empty() {
-        let by_number = body.mesh_order();
-        for &v in &spec.vertices {
-            match by_number.get(v as usize) {
-                Some(Some(vertex)) => vertices.push(*vertex),
-                Some(None) => {
-                    let element = body.kind.map_or("element", |kind| element_of(kind).0);
-                    return Err(format!("vertex {v} belongs to no {element} of body {}", spec.body));
-                }
-                None => {
-                    let count = counted(body.mesh_vertices, "vertex", "vertices");
-                    return Err(format!("vertex {v}, but body {} has {count}, counted from 0", spec.body));
-                }
-            }
-        }
-    }
-    // Middles of edges have no numbers in the mesh: they belong to both ends.
-    let mut named = vertices.clone();
-    named.sort_unstable();
-    let is_named = |v: &u32| named.binary_search(v).is_ok();
-    vertices.extend(body.middles().filter(|(ends, _)| ends.iter().all(is_named)).map(|(_, middle)| middle));
     if let Some(region) = &spec.region {
         vertices.extend(body.all_vertices().filter(|&v| region.contains(at(v))));
     }
@@ -99,5 +129,5 @@ fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u
         };
         vertices.extend(body.all_vertices().filter(on));
     }
-    Ok(vertices)
+    vertices
 }

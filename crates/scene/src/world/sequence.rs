@@ -60,7 +60,9 @@ pub(super) fn load(
 
 /// The meshes of a folder in natural order of their names.
 fn of_folder(folder: &Path, placing: &Placing) -> Result<Frames, IoError> {
-    let files = files_in(folder, &MESH_ENDINGS)?;
+    let mut files = files_in(folder, &MESH_ENDINGS)?;
+    // Of TetGen's pairs of files each names the other.
+    files.retain(|file| !file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ele")));
     if files.is_empty() {
         return Err(IoError::content(folder, Place::File, "no meshes in it, so no sequence"));
     }

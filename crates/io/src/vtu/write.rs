@@ -1,7 +1,5 @@
-//! VTK XML for ParaView: one unstructured grid `.vtu` a frame, and a collection `.pvd` with their times.
-//!
-//! Source: VTK's page "VTK XML file formats". Arrays are appended raw, little-endian, each behind its length
-//! in bytes (u64), neither encoded nor compressed.
+//! Grids as unstructured `.vtu` files, one a frame, and a collection `.pvd` with their times. Arrays are appended
+//! raw, little-endian, neither encoded nor compressed.
 
 use crate::atomic::write_atomic;
 use crate::error::IoError;
