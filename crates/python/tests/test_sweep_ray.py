@@ -6,7 +6,7 @@ import threading
 import time
 
 import pytest
-from test_sweep import LONG, begun, sweep, without_costs
+from sweeps import LONG, begun, sweep, without_costs
 
 import bowknot
 from bowknot import InputError
