@@ -44,6 +44,7 @@ pub fn check_files(py: Python<'_>, paths: Vec<PathBuf>, judging: Judging) -> PyR
         frames: FrameOptions {
             import: Import { up: up_of(&judging.up)?, scale: judging.scale },
             rate: judging.fps,
+            ..FrameOptions::default()
         },
         together: judging.together,
         paths: judging.between_frames,

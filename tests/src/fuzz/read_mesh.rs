@@ -3,7 +3,8 @@
 use super::Draw;
 use bowknot::check::{Judge, Parts, StateOptions};
 use bowknot::io::{
-    FrameStack, Import, IoError, Mesh, read_mesh as read, read_obj, read_ply, write_obj, write_ply,
+    FrameSource, FrameStack, Import, IoError, Mesh, read_mesh as read, read_obj, read_ply, write_obj,
+    write_ply,
 };
 use bowknot::recording::States;
 use bowknot_geometry::{Topology, check_mesh};
@@ -37,12 +38,19 @@ pub fn read_mesh(data: &[u8]) -> bool {
     let Ok(folder) = tempfile::tempdir() else { return false };
     let file = |ending: &str| folder.path().join(format!("mesh.{ending}"));
     let write = |path: &Path| fs::write(path, bytes).is_ok();
-    match choice % 7 {
+    match choice % 14 {
         0 => write(&file("obj")) && mesh(&file("obj"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         1 => write(&file("ply")) && mesh(&file("ply"), |path, mesh| write_ply(path, &mesh.view()), read_ply),
         2 => write(&file("npz")) && check_archive(&file("npz")),
         4 => write(&file("msh")) && solid(&file("msh")),
         5 => write(&file("t")) && solid(&file("t")),
+        7 => write(&file("stl")) && solid(&file("stl")),
+        8 => write(&file("mesh")) && solid(&file("mesh")),
+        9 => write(&file("node")) && write(&file("ele")) && solid(&file("ele")),
+        10 => write(&file("vtu")) && solid(&file("vtu")),
+        11 => write(&file("usda")) && animation(&file("usda")),
+        12 => write(&file("gltf")) && animation(&file("gltf")),
+        13 => write(&file("glb")) && animation(&file("glb")),
         6 => write(&file("seg")) && mesh(&file("seg"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         _ => write_arrays(&file("npz"), &mut Draw::new(bytes)).is_ok() && check_archive(&file("npz")),
     }
@@ -79,7 +87,7 @@ fn mesh(
     true
 }
 
-/// Reads a file of a format that is never written, and checks the mesh and the surface of its tetrahedra.
+/// Reads a file of a format that is not written again, and checks the mesh and the surface of its tetrahedra.
 fn solid(path: &Path) -> bool {
     match read(path, &Import::default()) {
         Ok(mut mesh) => {
@@ -93,9 +101,22 @@ fn solid(path: &Path) -> bool {
     }
 }
 
+/// Reads the first frames of a file that tells how meshes move.
+fn animation(path: &Path) -> bool {
+    let frames = || -> Result<(), IoError> {
+        let source = FrameSource::open(path)?;
+        for index in 0..source.len().min(3) {
+            check_sound(&source.read(index)?);
+        }
+        Ok(())
+    };
+    frames().map_or_else(|error| check_error(&error), |()| true)
+}
+
 /// Checks that indices are in range and numbers finite, and that neither the topology nor the judge panics.
 fn check_sound(mesh: &Mesh) {
-    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface, names: _ } = mesh;
+    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface, names: _, groups } =
+        mesh;
     let count = positions.len();
     let named = triangles.iter().flatten().chain(strands.iter().flatten()).chain(particles);
     let named = named.chain(tets.iter().flatten());
@@ -103,6 +124,9 @@ fn check_sound(mesh: &Mesh) {
     assert!(positions.iter().all(|p| p.iter().all(|c| c.is_finite())), "a coordinate is not finite");
     assert!(obstacle.as_ref().is_none_or(|flags| flags.len() == count), "obstacle flags of some vertices");
     assert!(body.as_ref().is_none_or(|bodies| bodies.len() == count), "bodies of some vertices");
+
+    let grouped = groups.iter().flat_map(|(_, vertices)| vertices);
+    assert!(grouped.into_iter().all(|&v| (v as usize) < count), "an index is out of range");
 
     if let Some(surface) = surface {
         assert!(

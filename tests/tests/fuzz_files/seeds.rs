@@ -1,6 +1,6 @@
 //! Small sound files of every kind.
 
-use bowknot::io::{MeshView, write_obj, write_ply};
+use bowknot::io::{MeshView, write_obj, write_ply, write_vtu};
 use bowknot::recording::States;
 use bowknot_tests::fuzz;
 use bowknot_tests::states::GENERATORS;
@@ -31,6 +31,8 @@ pub fn meshes() -> Vec<Vec<u8>> {
             add(0, &fs::read(&path).expect("just written"));
             write_ply(&path, &mesh).expect("written");
             add(1, &fs::read(&path).expect("just written"));
+            write_vtu(&path, &mesh).expect("written");
+            add(10, &fs::read(&path).expect("just written"));
         }
     }
     add(0, TAILORED.as_bytes());
@@ -50,8 +52,34 @@ pub fn meshes() -> Vec<Vec<u8>> {
              1 0 1 2\n# end\n",
     );
     add(6, b"v 0 0 0\nv 1 0 0\nv 0 1 0\ns 1 2\ns 2 3\n");
+    add(7, STL.as_bytes());
+    add(8, MEDIT.as_bytes());
+    add(11, USD.as_bytes());
+    add(12, GLTF.as_bytes());
     files
 }
+
+/// A facet.
+const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
+                   endloop\nendfacet\nendsolid a\n";
+
+/// A tetrahedron with a face and an edge.
+const MEDIT: &str = "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 \
+                     2\nTetrahedra\n1\n1 2 3 4 5\nTriangles\n1\n1 2 3 7\nEdges\n1\n1 2 3\nEnd\n";
+
+/// A mesh that moves, a curve and points.
+const USD: &str = "#usda 1.0\n(\n    upAxis = \"Z\"\n    timeCodesPerSecond = 24\n)\ndef Xform \"World\"\n{\n    \
+                   def Mesh \"a\"\n    {\n        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n        \
+                   point3f[] points.timeSamples = {\n            0: [(0, 0, 0), (1, 0, 0), (0, 1, 0)],\n            \
+                   1: [(0, 0, 1), (1, 0, 1), (0, 1, 1)],\n        }\n        int[] faceVertexCounts = [3]\n        \
+                   int[] faceVertexIndices = [0, 1, 2]\n    }\n}\n";
+
+/// A triangle in a buffer of base64.
+const GLTF: &str = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\
+                    \"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{\"bufferView\":0,\
+                    \"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}],\
+                    \"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\
+                    \"uri\":\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
 
 /// What modeling tools say about faces, polygons, negative indices, lines and points.
 const TAILORED: &str = "mtllib shirt.mtl\no shirt\ng front left\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1. 0\nv 0 \

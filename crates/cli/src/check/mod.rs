@@ -38,6 +38,7 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
                 scale: options.scale.unwrap_or(1.0),
             },
             rate: options.fps,
+            ..FrameOptions::default()
         },
         together: options.together,
         paths: options.between_frames,
