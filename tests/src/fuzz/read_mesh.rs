@@ -37,15 +37,27 @@ pub fn read_mesh(data: &[u8]) -> bool {
     let Ok(folder) = tempfile::tempdir() else { return false };
     let file = |ending: &str| folder.path().join(format!("mesh.{ending}"));
     let write = |path: &Path| fs::write(path, bytes).is_ok();
-    match choice % 7 {
+    match choice % 11 {
         0 => write(&file("obj")) && mesh(&file("obj"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         1 => write(&file("ply")) && mesh(&file("ply"), |path, mesh| write_ply(path, &mesh.view()), read_ply),
         2 => write(&file("npz")) && check_archive(&file("npz")),
         4 => write(&file("msh")) && solid(&file("msh")),
         5 => write(&file("t")) && solid(&file("t")),
+        7 => write(&file("stl")) && mesh(&file("stl"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
+        8 => write(&file("mesh")) && solid(&file("mesh")),
+        9 => write(&file("vtu")) && solid(&file("vtu")),
+        // Points and elements of TetGen, which are two files, one behind the other.
+        10 => write_pair(bytes, [&file("node"), &file("ele")]) && solid(&file("ele")),
         6 => write(&file("seg")) && mesh(&file("seg"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         _ => write_arrays(&file("npz"), &mut Draw::new(bytes)).is_ok() && check_archive(&file("npz")),
     }
+}
+
+/// Writes what stands before and after a line `--`.
+fn write_pair(bytes: &[u8], paths: [&Path; 2]) -> bool {
+    let split = bytes.windows(4).position(|window| window == b"\n--\n").unwrap_or(bytes.len());
+    let parts = [&bytes[..split], bytes.get(split + 4..).unwrap_or(&[])];
+    paths.iter().zip(parts).all(|(path, part)| fs::write(path, part).is_ok())
 }
 
 fn check_error(error: &IoError) -> bool {
@@ -95,7 +107,8 @@ fn solid(path: &Path) -> bool {
 
 /// Checks that indices are in range and numbers finite, and that neither the topology nor the judge panics.
 fn check_sound(mesh: &Mesh) {
-    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface, names: _ } = mesh;
+    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface, groups, names: _ } =
+        mesh;
     let count = positions.len();
     let named = triangles.iter().flatten().chain(strands.iter().flatten()).chain(particles);
     let named = named.chain(tets.iter().flatten());
@@ -103,6 +116,11 @@ fn check_sound(mesh: &Mesh) {
     assert!(positions.iter().all(|p| p.iter().all(|c| c.is_finite())), "a coordinate is not finite");
     assert!(obstacle.as_ref().is_none_or(|flags| flags.len() == count), "obstacle flags of some vertices");
     assert!(body.as_ref().is_none_or(|bodies| bodies.len() == count), "bodies of some vertices");
+
+    for (name, vertices) in groups.iter() {
+        let is_sound = vertices.is_sorted_by(|a, b| a < b) && vertices.iter().all(|&v| (v as usize) < count);
+        assert!(is_sound, "group {name} is out of order or of range");
+    }
 
     if let Some(surface) = surface {
         assert!(
