@@ -2,6 +2,7 @@
 
 use bowknot::io::{MeshView, write_obj, write_ply, write_vtu};
 use bowknot::recording::States;
+use bowknot_geometry::Point;
 use bowknot_tests::fuzz;
 use bowknot_tests::states::GENERATORS;
 use std::fs;
