@@ -184,7 +184,14 @@ pub fn read_mesh<'py>(py: Python<'py>, path: PathBuf, up: &str, scale: f64) -> P
         }
         PyResult::Ok(mesh)
     })?;
-    arrays_of(py, &read.finish()??)
+    let mesh = read.finish()??;
+    let groups = PyDict::new(py);
+    for (name, vertices) in mesh.groups.iter() {
+        groups.set_item(name, arrays::list(py, vertices.iter().copied()))?;
+    }
+    let result = arrays_of(py, &mesh)?;
+    result.set_item("groups", groups)?;
+    Ok(result)
 }
 
 /// Repairs a mesh: its arrays, and what was done as JSON.

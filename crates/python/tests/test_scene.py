@@ -162,6 +162,28 @@ def test_mesh_files_are_read_relative_to_where_they_are_named(tmp_path):
         bowknot.read_mesh(tmp_path / "tri.obj", scale=-1.0)
 
 
+def test_pins_select_groups_of_a_mesh_file(tmp_path):
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\ng hem\nf 2 4 3\n")
+    mesh = bowknot.read_mesh(tmp_path / "a.obj")
+    assert {name: list(vertices) for name, vertices in mesh.groups.items()} == {"hem": [1, 2, 3]}
+    scene = Scene()
+    scene.add_body(mesh=tmp_path / "a.obj", name="cloth")
+    scene.add_pin("cloth", group=["hem"])
+    simulator = Simulator(scene)
+    simulator.step()
+    held = simulator.positions_of("cloth")
+    assert np.array_equal(held[1:], mesh.vertices[1:]) and held[0, 2] < 0.0
+    scene = Scene()
+    scene.add_body(mesh, name="cloth")
+    scene.add_pin("cloth", mesh.groups["hem"])
+    assert np.array_equal(Simulator(scene).positions_of("cloth"), mesh.vertices)
+    wrong = Scene()
+    wrong.add_body(mesh=tmp_path / "a.obj", name="cloth")
+    wrong.add_pin("cloth", group="hen")
+    with pytest.raises(InputError, match="there are: hem; did you mean hem"):
+        Simulator(wrong)
+
+
 def test_builtin_scenes_and_those_of_the_repository_load():
     assert "drape" in bowknot.builtin_scenes()
     for name in bowknot.builtin_scenes():

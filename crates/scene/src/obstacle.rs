@@ -15,8 +15,8 @@ use std::path::PathBuf;
 pub struct ObstacleSpec {
     /// Name in messages. Default `obstacle` and its index.
     pub name: String,
-    /// Mesh file (OBJ, PLY, MSH, T, SEG) relative to the scene file; of tetrahedra, the surface. This,
-    /// `shape`, or `sequence`.
+    /// Mesh file (OBJ, PLY, STL, MSH, MESH, ELE, VTU, T, SEG) relative to the scene file; of tetrahedra, the
+    /// surface. This, `shape`, or `sequence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,
     /// Generated mesh, one by its arrays, or `half-space`, see the shapes. This, `mesh`, or `sequence`.

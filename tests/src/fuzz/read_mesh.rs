@@ -44,16 +44,24 @@ pub fn read_mesh(data: &[u8]) -> bool {
         2 => write(&file("npz")) && check_archive(&file("npz")),
         4 => write(&file("msh")) && solid(&file("msh")),
         5 => write(&file("t")) && solid(&file("t")),
-        7 => write(&file("stl")) && solid(&file("stl")),
+        7 => write(&file("stl")) && mesh(&file("stl"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         8 => write(&file("mesh")) && solid(&file("mesh")),
-        9 => write(&file("node")) && write(&file("ele")) && solid(&file("ele")),
-        10 => write(&file("vtu")) && solid(&file("vtu")),
+        9 => write(&file("vtu")) && solid(&file("vtu")),
+        // Points and elements of TetGen, which are two files, one behind the other.
+        10 => write_pair(bytes, [&file("node"), &file("ele")]) && solid(&file("ele")),
         11 => write(&file("usda")) && animation(&file("usda")),
         12 => write(&file("gltf")) && animation(&file("gltf")),
         13 => write(&file("glb")) && animation(&file("glb")),
         6 => write(&file("seg")) && mesh(&file("seg"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         _ => write_arrays(&file("npz"), &mut Draw::new(bytes)).is_ok() && check_archive(&file("npz")),
     }
+}
+
+/// Writes what stands before and after a line `--`.
+fn write_pair(bytes: &[u8], paths: [&Path; 2]) -> bool {
+    let split = bytes.windows(4).position(|window| window == b"\n--\n").unwrap_or(bytes.len());
+    let parts = [&bytes[..split], bytes.get(split + 4..).unwrap_or(&[])];
+    paths.iter().zip(parts).all(|(path, part)| fs::write(path, part).is_ok())
 }
 
 fn check_error(error: &IoError) -> bool {
@@ -115,7 +123,7 @@ fn animation(path: &Path) -> bool {
 
 /// Checks that indices are in range and numbers finite, and that neither the topology nor the judge panics.
 fn check_sound(mesh: &Mesh) {
-    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface, names: _, groups } =
+    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface, groups, names: _ } =
         mesh;
     let count = positions.len();
     let named = triangles.iter().flatten().chain(strands.iter().flatten()).chain(particles);
@@ -125,8 +133,10 @@ fn check_sound(mesh: &Mesh) {
     assert!(obstacle.as_ref().is_none_or(|flags| flags.len() == count), "obstacle flags of some vertices");
     assert!(body.as_ref().is_none_or(|bodies| bodies.len() == count), "bodies of some vertices");
 
-    let grouped = groups.iter().flat_map(|(_, vertices)| vertices);
-    assert!(grouped.into_iter().all(|&v| (v as usize) < count), "an index is out of range");
+    for (name, vertices) in groups.iter() {
+        let is_sound = vertices.is_sorted_by(|a, b| a < b) && vertices.iter().all(|&v| (v as usize) < count);
+        assert!(is_sound, "group {name} is out of order or of range");
+    }
 
     if let Some(surface) = surface {
         assert!(

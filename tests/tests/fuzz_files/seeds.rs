@@ -2,6 +2,7 @@
 
 use bowknot::io::{MeshView, write_obj, write_ply, write_vtu};
 use bowknot::recording::States;
+use bowknot_geometry::Point;
 use bowknot_tests::fuzz;
 use bowknot_tests::states::GENERATORS;
 use std::fs;
@@ -31,8 +32,6 @@ pub fn meshes() -> Vec<Vec<u8>> {
             add(0, &fs::read(&path).expect("just written"));
             write_ply(&path, &mesh).expect("written");
             add(1, &fs::read(&path).expect("just written"));
-            write_vtu(&path, &mesh).expect("written");
-            add(10, &fs::read(&path).expect("just written"));
         }
     }
     add(0, TAILORED.as_bytes());
@@ -51,23 +50,27 @@ pub fn meshes() -> Vec<Vec<u8>> {
         b"Vertex 0 0 0 0\nVertex 1 1 0 0 {rgb=(1 0 0)}\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\nFace \
              1 0 1 2\n# end\n",
     );
-    add(6, b"v 0 0 0\nv 1 0 0\nv 0 1 0\ns 1 2\ns 2 3\n");
     add(7, STL.as_bytes());
+    add(7, &binary_stl());
     add(8, MEDIT.as_bytes());
+    add(9, VTU.as_bytes());
+    let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Point::from);
+    let mesh = MeshView {
+        positions: &positions,
+        triangles: &[[0, 1, 2]],
+        body: &[0, 0, 1, 1],
+        ..MeshView::default()
+    };
+    write_vtu(&path, &mesh).expect("written");
+    add(9, &fs::read(&path).expect("just written"));
+    add(10, TETGEN.as_bytes());
+    add(6, b"v 0 0 0\nv 1 0 0\nv 0 1 0\ns 1 2\ns 2 3\n");
     add(11, USD.as_bytes());
     add(12, GLTF.as_bytes());
     files
 }
 
-/// A facet.
-const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
-                   endloop\nendfacet\nendsolid a\n";
-
-/// A tetrahedron with a face and an edge.
-const MEDIT: &str = "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 1\n1 0 0 1\n0 1 0 2\n0 0 1 \
-                     2\nTetrahedra\n1\n1 2 3 4 5\nTriangles\n1\n1 2 3 7\nEdges\n1\n1 2 3\nEnd\n";
-
-/// A mesh that moves, a curve and points.
+/// A mesh that moves.
 const USD: &str = "#usda 1.0\n(\n    upAxis = \"Z\"\n    timeCodesPerSecond = 24\n)\ndef Xform \"World\"\n{\n    \
                    def Mesh \"a\"\n    {\n        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\n        \
                    point3f[] points.timeSamples = {\n            0: [(0, 0, 0), (1, 0, 0), (0, 1, 0)],\n            \
@@ -139,6 +142,40 @@ fn binary_msh_2() -> Vec<u8> {
     file.extend(b"\n$EndElements\n");
     file
 }
+
+const STL: &str = "solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\n\
+                   endloop\nendfacet\nendsolid\nsolid\nendsolid\n";
+
+fn binary_stl() -> Vec<u8> {
+    let mut file = b"solid of eighty bytes".to_vec();
+    file.resize(80, 0);
+    file.extend(2_u32.to_le_bytes());
+    for triangle in
+        [[0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.5]]
+    {
+        file.extend([0; 12]);
+        triangle.iter().for_each(|number| file.extend(number.to_le_bytes()));
+        file.extend([0; 2]);
+    }
+    file
+}
+
+const MEDIT: &str = "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n2 2 2 0\n\
+                     Tetrahedra 1\n1 2 3 4 7\nTriangles 1\n1 2 3 2\nQuadrilaterals 1\n2 3 4 5 0\nEdges 1\n4 5 3\n\
+                     Corners 1\n1\nEnd\n";
+
+/// Text, a piece in base64, and cells that become nothing.
+const VTU: &str = "<VTKFile type=\"UnstructuredGrid\" byte_order=\"BigEndian\"><UnstructuredGrid>\n\
+    <Piece NumberOfPoints=\"4\" NumberOfCells=\"3\"><Points><DataArray type=\"Float32\" format=\"ascii\">0 0 0 1 0 0 0 1 0 \
+    0 0 1</DataArray></Points>\n<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3 0 1 2 3 0 \
+    </DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4 8 9</DataArray>\n\
+    <DataArray type=\"UInt8\" Name=\"types\" format=\"binary\">AAAAAwoJDA==</DataArray></Cells>\n\
+    <PointData><DataArray type=\"Int8\" Name=\"hem\" format=\"ascii\">0 1 1 0</DataArray></PointData></Piece>\n\
+    </UnstructuredGrid></VTKFile>\n";
+
+/// The two files of TetGen.
+const TETGEN: &str =
+    "4 3 1 1\n1 0 0 0 0.5 2\n2 1 0 0 0.5 0\n3 0 1 0 0.5 2\n4 0 0 1 0.5 0\n--\n1 4 1\n1 1 2 3 4 9\n";
 
 /// Scenes that use most keys, small enough to be built.
 pub fn scenes() -> Vec<Vec<u8>> {

@@ -1,7 +1,7 @@
 use super::scene;
 use bowknot::check::{Judge, PathOptions, StateOptions};
 use bowknot::geometry::{Point, Vector};
-use bowknot::io::{FrameStack, MeshView, write_obj};
+use bowknot::io::{FrameStack, MeshView, write_obj, write_vtu};
 use bowknot::shapes::Woven;
 use bowknot::simulator::AcceptedStep;
 use bowknot::{Scene, SimulationObserver, Simulator, StepStatistics, World};
@@ -227,6 +227,9 @@ fn a_sequence_pushes_cloth_from_a_folder_as_from_an_archive() {
         let positions = box_frame(frame);
         let path = folder.path().join(format!("frames/{frame}.obj"));
         write_obj(&path, &MeshView { positions: &positions, ..view }).expect("a frame");
+        // It is no other frame in another format.
+        let vtu = path.with_extension("vtu");
+        write_vtu(&vtu, &MeshView { positions: &positions, ..view }).expect("a frame");
         assert!(stack.push(&positions));
     }
     stack.write(&folder.path().join("frames.npz")).expect("an archive");

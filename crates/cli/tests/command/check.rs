@@ -136,6 +136,14 @@ fn solids_and_strands_are_counted() {
     place.write("strand.seg", "v 0 0 0\nv 1 0 0\nv 2 0 0\ns 1 2\ns 2 3\n");
     let info = place.run("info solid.msh --json").ok().json();
     assert_eq!((&info["vertices"], &info["tets"], &info["triangles"]), (&5.into(), &4.into(), &4.into()));
+    place.write("groups.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\ng hem\nf 1 2 3\ng hem top\nf 2 4 3\n");
+    let info = place.run("info groups.obj").ok();
+    assert!(
+        info.stdout.contains("groups             2\n    hem: 4 vertices\n    top: 3 vertices"),
+        "{info:#?}"
+    );
+    let info = place.run("info groups.obj --json").ok().json();
+    assert_eq!((&info["groups"]["hem"], &info["groups"]["top"]), (&4.into(), &3.into()));
     let info = place.run("info strand.seg").ok();
     assert!(info.stdout.contains("strand edges       2"), "{info:#?}");
 }

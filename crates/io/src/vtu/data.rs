@@ -16,7 +16,8 @@ pub(super) struct Storage<'a> {
     pub is_big_endian: bool,
     /// Size of lengths [bytes]: 4 or 8.
     pub length_size: usize,
-    pub is_compressed: bool,
+    /// What the content is compressed by, if it is no text.
+    pub compressor: Option<&'a str>,
     /// What stands behind the last element, without the underscore before it.
     pub appended: &'a [u8],
     pub is_appended_raw: bool,
@@ -45,7 +46,14 @@ impl Storage<'_> {
                 return Err(fault(format!("format {format} must be ascii, binary or appended")));
             }
         };
-        let content = if self.is_compressed { self.decompress(&bytes) } else { self.uncompressed(&bytes) };
+        let content = match self.compressor {
+            None => self.uncompressed(&bytes),
+            Some("vtkZLibDataCompressor") => self.decompress(&bytes),
+            Some(other) => {
+                let message = format!("compressor {other} is not read: save it with that of zlib or none");
+                return Err(fault(message));
+            }
+        };
         numbers_of(array.attribute("type").unwrap_or("missing"), &content.map_err(fault)?, self.is_big_endian)
             .map_err(fault)
     }

@@ -63,10 +63,10 @@ fn split_appended(bytes: &[u8]) -> Result<(String, &[u8]), Fault> {
 }
 
 /// The grid, and how its arrays are stored.
-fn grid<'d, 'i, 'b>(
+fn grid<'d, 'i>(
     document: &'d Document<'i>,
-    appended: &'b [u8],
-) -> Result<(Storage<'b>, Node<'d, 'i>), Fault> {
+    appended: &'d [u8],
+) -> Result<(Storage<'d>, Node<'d, 'i>), Fault> {
     let file = document.root_element();
     let fault = |message: String| (line(document, file), message);
     if !file.has_tag_name("VTKFile") {
@@ -88,13 +88,7 @@ fn grid<'d, 'i, 'b>(
         "UInt64" => 8,
         other => return Err(fault(format!("header_type {other} must be UInt32 or UInt64"))),
     };
-    let is_compressed = match attribute("compressor", "") {
-        "" => false,
-        "vtkZLibDataCompressor" => true,
-        other => {
-            return Err(fault(format!("compressor {other} is not read: save it with that of zlib or none")));
-        }
-    };
+    let compressor = file.attribute("compressor").filter(|name| !name.is_empty());
     let element = file.children().find(|node| node.has_tag_name("AppendedData"));
     let is_appended_raw = match element.and_then(|element| element.attribute("encoding")).unwrap_or("base64")
     {
@@ -104,7 +98,7 @@ fn grid<'d, 'i, 'b>(
     };
     let mut offsets: Vec<usize> = grid.descendants().filter_map(offset).collect();
     offsets.sort_unstable();
-    let storage = Storage { is_big_endian, length_size, is_compressed, appended, is_appended_raw, offsets };
+    let storage = Storage { is_big_endian, length_size, compressor, appended, is_appended_raw, offsets };
     Ok((storage, grid))
 }
 

@@ -6,7 +6,7 @@ Nothing is imported from meshio, trimesh and pyvista: an object that looks like 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -36,6 +36,8 @@ class Mesh:
         Vertices of the edges of strands.
     particles : ndarray of uint32, shape (p,)
         Vertices that are particles.
+    groups : dict of str to ndarray of uint32
+        Vertices of each group of a mesh file, by name: ``scene.add_pin("cape", mesh.groups["hem"])``.
     """
 
     vertices: NDArray[np.float64]
@@ -43,6 +45,7 @@ class Mesh:
     tets: NDArray[np.uint32]
     edges: NDArray[np.uint32]
     particles: NDArray[np.uint32]
+    groups: dict[str, NDArray[np.uint32]] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         counts = [
@@ -51,6 +54,7 @@ class Mesh:
             (len(self.tets), "tets"),
             (len(self.edges), "edges"),
             (len(self.particles), "particles"),
+            (len(self.groups), "groups"),
         ]
         return f"Mesh({', '.join(f'{count} {what}' for count, what in counts if count)})"
 

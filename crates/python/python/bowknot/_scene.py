@@ -170,7 +170,8 @@ class Scene:
         body : str
             The name of the body.
         vertices : array_like of integers, optional
-            Vertices of its mesh. Other keys choose them as well: ``side``, ``box``, ``roots``.
+            Vertices of its mesh. Other keys choose them as well: ``group``, a name or a list of names of the groups of
+            a mesh file, ``side``, ``box``, ``roots``.
         **keys
             Keys of ``[[pin]]``: ``motion``, ``follow``, ``start``, ``end`` and others.
         """

@@ -61,8 +61,8 @@ pub(super) fn load(
 /// The meshes of a folder in natural order of their names.
 fn of_folder(folder: &Path, placing: &Placing) -> Result<Frames, IoError> {
     let mut files = files_in(folder, &MESH_ENDINGS)?;
-    // Of TetGen's pairs of files each names the other.
-    files.retain(|file| !file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ele")));
+    // A frame that is there in several formats, or in the two files of TetGen, is one frame.
+    files.dedup_by(|later, earlier| later.file_stem() == earlier.file_stem());
     if files.is_empty() {
         return Err(IoError::content(folder, Place::File, "no meshes in it, so no sequence"));
     }
