@@ -11,7 +11,7 @@ use crate::tet_list::read_tet_list;
 use std::path::Path;
 
 /// Endings of the files that [`read_mesh`] reads, in lower case.
-pub const MESH_ENDINGS: [&str; 8] = ["obj", "ply", "msh", "t", "seg", "usda", "gltf", "glb"];
+pub const MESH_ENDINGS: [&str; 9] = ["obj", "ply", "msh", "t", "seg", "usda", "usd", "gltf", "glb"];
 
 /// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (`.t`),
 /// strand segments (`.seg`), USD stages and glTF scenes where nothing moves.
@@ -27,7 +27,7 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         "msh" => read_msh(path, import),
         "t" => read_tet_list(path, import),
         "seg" => read_segments(path, import),
-        "usda" | "gltf" | "glb" => read_still(path, import),
+        "usda" | "usd" | "usdc" | "usdz" | "gltf" | "glb" => read_still(path, import),
         _ => {
             let endings = MESH_ENDINGS.map(|ending| format!(".{ending}")).join(", ");
             Err(IoError::content(path, Place::File, format!("not a mesh: only {endings} files are read")))

@@ -75,11 +75,11 @@ fn missing_files_and_wrong_endings() {
     assert!(message(FrameStack::read(&at("none.npz"))).contains("no such file"));
     assert!(
         message(read_mesh(&at("none.stl"), &Import::default()))
-            .contains("only .obj, .ply, .msh, .t, .seg, .usda, .gltf, .glb files")
+            .contains("only .obj, .ply, .msh, .t, .seg, .usda, .usd, .gltf, .glb files")
     );
     assert!(
         message(read_mesh(folder.path(), &Import::default()))
-            .contains("only .obj, .ply, .msh, .t, .seg, .usda, .gltf, .glb files")
+            .contains("only .obj, .ply, .msh, .t, .seg, .usda, .usd, .gltf, .glb files")
     );
     fs::create_dir(at("folder.npz")).unwrap();
     fs::create_dir(at("folder.ply")).unwrap();
