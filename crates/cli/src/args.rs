@@ -484,6 +484,8 @@ pub enum Format {
     Usd,
     /// VTK XML, one file per frame, for ParaView
     Vtu,
+    /// One binary glTF scene (.glb) of all frames, as morph targets
+    Gltf,
 }
 
 impl Format {
@@ -496,6 +498,7 @@ impl Format {
             Self::Pc2 => "pc2",
             Self::Usd => "usd",
             Self::Vtu => "vtu",
+            Self::Gltf => "gltf",
         }
     }
 
@@ -509,6 +512,7 @@ impl Format {
             Self::Pc2 => Format::Pc2,
             Self::Usd => Format::Usd,
             Self::Vtu => Format::Vtu,
+            Self::Gltf => Format::Gltf,
         }
     }
 }

@@ -11,6 +11,7 @@
 mod atomic;
 mod elements;
 mod error;
+mod field;
 mod folder;
 mod frame_source;
 mod gltf;
@@ -39,6 +40,7 @@ pub use bowknot_geometry as geometry;
 
 pub use atomic::{create_folder, write_atomic, write_text};
 pub use error::{IoError, Place};
+pub use field::{Field, FieldValues};
 pub use folder::files_in;
 pub use frame_source::{FrameOptions, FrameSource};
 pub use gltf::{GltfBody, write_glb};
@@ -47,15 +49,15 @@ pub use import::{Import, Up};
 pub use mesh::{Mesh, MeshView};
 pub use msh::write_msh;
 #[cfg(feature = "npz")]
-pub use npz::{FrameStack, write_frame_stack};
+pub use npz::{FrameStack, write_frame_stack, write_frame_stack_with_fields};
 pub use obj::{read_obj, read_obj_surface, write_obj};
 pub use pc2::{truncate_pc2, write_pc2_frame};
 pub use ply::{read_ply, write_ply};
 pub use read::{MESH_ENDINGS, read_mesh};
 pub use surface::{Corner, EdgeSplit, Labels, Polygon, PolygonFaults, Surface};
 pub use tet_list::write_tet_list;
-pub use usd::{UsdBody, write_usda};
-pub use vtu::{write_pvd, write_vtu};
+pub use usd::{UsdBody, write_usda, write_usda_with_fields};
+pub use vtu::{write_pvd, write_vtu, write_vtu_with_fields};
 
 #[cfg(all(test, feature = "npz"))]
 mod tests;

@@ -15,8 +15,8 @@ use crate::vtu::read_vtu;
 use std::path::Path;
 
 /// Endings of the files that [`read_mesh`] reads, in lower case.
-pub const MESH_ENDINGS: [&str; 13] =
-    ["obj", "ply", "stl", "msh", "mesh", "node", "ele", "vtu", "t", "seg", "usda", "gltf", "glb"];
+pub const MESH_ENDINGS: [&str; 14] =
+    ["obj", "ply", "stl", "msh", "mesh", "node", "ele", "vtu", "t", "seg", "usda", "usd", "gltf", "glb"];
 
 /// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, STL, Gmsh's MSH, Medit's `.mesh`,
 /// TetGen's `.node` and `.ele`, VTK's VTU, lists of tetrahedra (`.t`), strand segments (`.seg`), USD stages and
@@ -38,7 +38,7 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         "vtu" => read_vtu(path, import),
         "t" => read_tet_list(path, import),
         "seg" => read_segments(path, import),
-        "usda" | "gltf" | "glb" => read_still(path, import),
+        "usda" | "usd" | "usdc" | "usdz" | "gltf" | "glb" => read_still(path, import),
         _ => {
             let endings = MESH_ENDINGS.map(|ending| format!(".{ending}")).join(", ");
             Err(IoError::content(path, Place::File, format!("not a mesh: only {endings} files are read")))

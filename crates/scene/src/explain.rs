@@ -99,7 +99,7 @@ mod tests {
             ),
             (
                 "[output]\nformats = [\"PLY\"]",
-                "\"PLY\" must be one of ply, obj, npz, pc2, usd, vtu; did you mean \"ply\"?",
+                "\"PLY\" must be one of ply, obj, npz, pc2, usd, vtu, gltf; did you mean \"ply\"?",
             ),
             ("shape = { type = \"sheet\", size = 3 }", "must be an array of 2 values, not the number 3"),
         ] {

@@ -146,7 +146,7 @@ impl Default for SleepParams {
 #[serde(deny_unknown_fields, default)]
 pub struct OutputParams {
     /// Formats of the frames: `ply`, `obj` and `vtu` write one file per frame, `pc2` one point cache per
-    /// body, `npz` and `usd` one file of all frames at the end. Default `["ply"]`.
+    /// body, `npz`, `usd` and `gltf` one file of all frames at the end. Default `["ply"]`.
     pub formats: Vec<Format>,
     /// Time steps between checkpoints [1]; 0 writes one at the end only. Smaller: less is repeated after
     /// an interruption. Default 10.
@@ -156,6 +156,12 @@ pub struct OutputParams {
     pub trace: bool,
     /// Whether the collision problems are written to `states/`, for `bowknot resolve`. Default false.
     pub record: bool,
+    /// Whether the velocities of all vertices are kept in `fields/velocities.f64`; frames in `vtu`, `npz` and
+    /// `usd` then have them. Default false.
+    pub velocities: bool,
+    /// Whether the contact forces on all vertices are kept in `fields/contact_forces.f64`; frames in `vtu`,
+    /// `npz` and `usd` then have them. Default false.
+    pub contact_forces: bool,
 }
 
 /// Format of the frames.
@@ -174,6 +180,8 @@ pub enum Format {
     Usd,
     /// VTK XML for ParaView.
     Vtu,
+    /// Binary glTF of all frames, as morph targets.
+    Gltf,
 }
 
 impl Default for SimulationParams {
@@ -191,7 +199,14 @@ impl Default for SimulationParams {
 
 impl Default for OutputParams {
     fn default() -> Self {
-        Self { formats: vec![Format::Ply], checkpoint_every: 10, trace: false, record: false }
+        Self {
+            formats: vec![Format::Ply],
+            checkpoint_every: 10,
+            trace: false,
+            record: false,
+            velocities: false,
+            contact_forces: false,
+        }
     }
 }
 
@@ -227,6 +242,6 @@ impl Parameters for SleepParams {
 impl Parameters for OutputParams {
     fn check(&self, checks: &mut Checks) {
         let fits = !self.formats.is_empty();
-        checks.require(fits, "formats", "[]", "must name at least one of ply, obj, npz, pc2, usd, vtu");
+        checks.require(fits, "formats", "[]", "must name at least one of ply, obj, npz, pc2, usd, vtu, gltf");
     }
 }

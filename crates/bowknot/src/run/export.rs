@@ -1,9 +1,11 @@
 //! Frames of a run, or of any folder, in other formats.
 
-use super::frames::{FrameWriter, SURFACE};
+use super::frames::{FrameWriter, SURFACE, field_file};
 use super::layout::Layout;
+use super::spool::Spool;
+use bowknot_errors::counted;
 use bowknot_geometry::Point;
-use bowknot_io::{FrameSource, IoError, Mesh, Place, Surface, create_folder, read_obj_surface};
+use bowknot_io::{Field, FrameSource, IoError, Mesh, Place, Surface, create_folder, read_obj_surface};
 use bowknot_scene::shapes::Shape;
 use bowknot_scene::{Format, Scene};
 use std::path::{Path, PathBuf};
@@ -150,8 +152,11 @@ pub fn export(
     create_folder(&options.out)?;
     let spool = options.out.join(format!(".frames.{}.part", std::process::id()));
     let layout = Layout::of_mesh(&first, surface_of(source, &first)?, names);
-    let writer =
-        FrameWriter::new(&options.out, &options.formats, layout, spool, time_step * stride as f64, width)?;
+    let fields = fields_of(source, layout.vertices(), frames.len());
+    let own = |field: Field| options.out.join(format!(".{}.{}.part", field.name(), std::process::id()));
+    let paths = fields.iter().map(|(field, _)| (*field, own(*field))).collect();
+    let time_step = time_step * stride as f64;
+    let writer = FrameWriter::new(&options.out, &options.formats, layout, spool, paths, time_step, width)?;
     let elements = Mesh { positions: Vec::new(), surface: None, ..first.clone() };
     let mut write = || {
         let taken = frames.len().div_ceil(stride);
@@ -165,15 +170,38 @@ pub fn export(
                 let message = "its elements differ from those of the first frame: export it by itself";
                 return Err(IoError::content(frames.path(index), Place::File, message));
             }
-            writer.write(place, &positions)?;
+            let values = fields.iter().map(|(_, spool)| {
+                let values =
+                    spool.read(index).map_err(|error| IoError::system("read", spool.path(), error))?;
+                Ok(values.iter().map(|value| value.coords).collect())
+            });
+            writer.write(place, &positions, &values.collect::<Result<Vec<_>, IoError>>()?)?;
             progress(place + 1, taken);
         }
         writer.finish(taken)?;
         Ok(taken)
     };
     let written = write();
-    writer.remove_spool();
+    writer.remove_spools();
     Ok(Exported { frames: written?, vertices: first.positions.len() })
+}
+
+/// The fields that a run has kept for its frames, of so many vertices each.
+fn fields_of(source: &Path, vertices: usize, frames: usize) -> Vec<(Field, Spool)> {
+    let mut fields = Vec::new();
+    for field in Field::ALL {
+        let spool = Spool::new(source.join(field_file(field)), vertices);
+        match spool.frames() {
+            count if count == frames => fields.push((field, spool)),
+            0 => {}
+            count => tracing::warn!(
+                "{}: it has {}, not {frames}, so it is not used",
+                spool.path().display(),
+                counted(count, "frame", "frames")
+            ),
+        }
+    }
+    fields
 }
 
 /// What is known about the faces of the frames of `source`, of which `first` is the first.

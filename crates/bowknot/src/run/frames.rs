@@ -5,19 +5,23 @@
 //! frames.pvd                        the .vtu files with their times
 //! frames.npz                        all frames
 //! scene.usda                        all frames
+//! scene.glb                         all frames
 //! pc2/BODY.pc2, pc2/BODY.obj        the motion of a body, and the body at the first frame
+//! fields/velocities.f64, ..         vectors of all vertices of all frames, if the scene asks for them
 //! surface/000000.obj                what a mesh says about its faces, for exports of PLY frames later on
 //! ```
 //!
-//! The archive and the USD stage come into being when a run ends, from a spool of bare positions on disk.
+//! The archive, the USD stage and the glTF scene come into being when a run ends, from a spool of bare positions on
+//! disk.
 
 use super::layout::{Layout, Part};
 use super::spool::Spool;
 use bowknot_errors::counted;
-use bowknot_geometry::Point;
+use bowknot_geometry::{Point, Vector};
 use bowknot_io::{
-    self as io, Import, IoError, MeshView, Place, UsdBody, create_folder, write_frame_stack, write_obj,
-    write_ply, write_usda, write_vtu,
+    self as io, Field, FieldValues, GltfBody, Import, IoError, MeshView, Place, UsdBody, create_folder,
+    write_frame_stack_with_fields, write_glb, write_obj, write_ply, write_usda_with_fields,
+    write_vtu_with_fields,
 };
 use bowknot_scene::Format;
 use std::path::{Path, PathBuf};
@@ -25,9 +29,17 @@ use std::path::{Path, PathBuf};
 /// The first frame of a run, with all that its meshes say about their faces.
 pub(super) const SURFACE: &str = "surface/000000.obj";
 
+/// Where a run keeps a field.
+pub(super) fn field_file(field: Field) -> &'static str {
+    match field {
+        Field::Velocity => "fields/velocities.f64",
+        Field::ContactForce => "fields/contact_forces.f64",
+    }
+}
+
 /// Formats that are made from the spool.
 fn needs_spool(format: &Format) -> bool {
-    matches!(format, Format::Npz | Format::Usd)
+    matches!(format, Format::Npz | Format::Usd | Format::Gltf)
 }
 
 /// Writes frames, one after the other.
@@ -40,6 +52,7 @@ pub(super) struct FrameWriter {
     /// File names of the parts, without endings.
     part_files: Vec<String>,
     spool: Option<Spool>,
+    fields: Vec<(Field, Spool)>,
     /// Time from frame to frame [s].
     time_step: f64,
     /// Thickness of strands and particles where it is shown [m]; none: from their size at the first frame.
@@ -47,12 +60,14 @@ pub(super) struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// Prepares the folders. The spool is a file of this path, which stays until someone removes it.
+    /// Prepares the folders. The spool is a file of this path, which stays until someone removes it. Fields are
+    /// kept in files of their paths, whatever the formats.
     pub fn new(
         folder: &Path,
         formats: &[Format],
         layout: Layout,
         spool: PathBuf,
+        fields: Vec<(Field, PathBuf)>,
         time_step: f64,
         width: Option<f64>,
     ) -> Result<Self, IoError> {
@@ -66,20 +81,35 @@ impl FrameWriter {
         }
         let parts = layout.parts();
         let spool = formats.iter().any(needs_spool).then(|| Spool::new(spool, layout.vertices()));
+        let fields = fields.into_iter().map(|(field, path)| (field, Spool::new(path, layout.vertices())));
+        let fields = fields.collect();
         let part_files = file_names(&parts);
-        Ok(Self { folder: folder.to_owned(), formats, layout, parts, part_files, spool, time_step, width })
+        let folder = folder.to_owned();
+        Ok(Self { folder, formats, layout, parts, part_files, spool, fields, time_step, width })
     }
 
-    /// Writes a frame, counted from 0, of as many positions as the layout has vertices.
-    pub fn write(&self, frame: usize, positions: &[Point]) -> Result<(), IoError> {
+    /// The fields that frames have, in the order in which [`Self::write`] takes them.
+    pub fn fields(&self) -> impl Iterator<Item = Field> {
+        self.fields.iter().map(|(field, _)| *field)
+    }
+
+    /// Writes a frame, counted from 0, of as many positions as the layout has vertices, and as many vectors of
+    /// each field.
+    pub fn write(&self, frame: usize, positions: &[Point], fields: &[Vec<Vector>]) -> Result<(), IoError> {
         let view = self.layout.view(positions);
+        for ((_, spool), values) in self.fields.iter().zip(fields) {
+            let points: Vec<Point> = values.iter().map(|&value| Point::from(value)).collect();
+            spool.write(frame, &points)?;
+        }
+        let values = self.fields().zip(fields).map(|(field, values)| FieldValues { field, values });
+        let values: Vec<FieldValues<'_>> = values.collect();
         for format in &self.formats {
             match format {
                 Format::Ply => write_ply(&self.frame_path(frame, "ply"), &view)?,
                 Format::Obj => write_obj(&self.frame_path(frame, "obj"), &view)?,
-                Format::Vtu => write_vtu(&self.frame_path(frame, "vtu"), &view)?,
+                Format::Vtu => write_vtu_with_fields(&self.frame_path(frame, "vtu"), &view, &values)?,
                 Format::Pc2 => self.write_caches(frame, positions)?,
-                Format::Npz | Format::Usd => {}
+                Format::Npz | Format::Usd | Format::Gltf => {}
             }
         }
         self.spool.as_ref().map_or(Ok(()), |spool| spool.write(frame, positions))
@@ -110,7 +140,18 @@ impl FrameWriter {
 
     /// Makes files of many frames hold the first `frames`, as a run that is resumed needs them; what they
     /// lack comes from the other formats.
+    ///
+    /// # Errors
+    /// Fields of fewer frames, which nothing else has.
     pub fn restore(&self, frames: usize) -> Result<(), IoError> {
+        if let Some((field, spool)) = self.fields.iter().find(|(_, spool)| spool.frames() < frames) {
+            let message = format!(
+                "it has {}, {frames} are needed: go on without the output of {}, or compute the run from its start",
+                counted(spool.frames(), "frame", "frames"),
+                field.name()
+            );
+            return Err(IoError::content(spool.path(), Place::File, message));
+        }
         let caches = self.formats.contains(&Format::Pc2)
             && self.parts.iter().zip(&self.part_files).any(|(part, name)| {
                 io::truncate_pc2(&self.cache_path(name), frames, part.vertices.len()).is_err()
@@ -161,12 +202,32 @@ impl FrameWriter {
         let Some(spool) = &self.spool else { return Ok(()) };
         if self.formats.contains(&Format::Npz) {
             let path = self.folder.join("frames.npz");
-            write_frame_stack(&path, &self.layout.view(&[]), frames, |f, bytes| spool.read_bytes(f, bytes))?;
+            let (view, fields) = (self.layout.view(&[]), self.fields().collect::<Vec<_>>());
+            write_frame_stack_with_fields(&path, &view, frames, &fields, |field, frame, bytes| {
+                self.spool_of(spool, field).read_bytes(frame, bytes)
+            })?;
         }
         if self.formats.contains(&Format::Usd) {
             self.write_stage(spool, frames)?;
         }
+        if self.formats.contains(&Format::Gltf) {
+            let bodies = self.parts.iter().map(|part| GltfBody {
+                name: &part.name,
+                elements: part.elements(),
+                obstacle: part.obstacle,
+            });
+            let (path, bodies) = (self.folder.join("scene.glb"), bodies.collect::<Vec<_>>());
+            write_glb(&path, &bodies, frames, self.time_step, |body, frame| {
+                Ok(self.parts[body].positions(&spool.read(frame)?))
+            })?;
+        }
         Ok(())
+    }
+
+    /// The spool of a field, else that of positions.
+    fn spool_of<'a>(&'a self, positions: &'a Spool, field: Option<Field>) -> &'a Spool {
+        let found = self.fields.iter().find(|(own, _)| Some(*own) == field);
+        found.map_or(positions, |(_, spool)| spool)
     }
 
     fn write_stage(&self, spool: &Spool, frames: usize) -> Result<(), IoError> {
@@ -182,16 +243,15 @@ impl FrameWriter {
             })
             .collect();
         let path = self.folder.join("scene.usda");
-        write_usda(&path, &bodies, frames, 1.0 / self.time_step, |body, frame| {
-            Ok(self.parts[body].positions(&spool.read(frame)?))
+        let (rate, fields) = (1.0 / self.time_step, self.fields().collect::<Vec<_>>());
+        write_usda_with_fields(&path, &bodies, frames, rate, &fields, |field, body, frame| {
+            Ok(self.parts[body].positions(&self.spool_of(spool, field).read(frame)?))
         })
     }
 
-    /// Removes the spool.
-    pub fn remove_spool(&self) {
-        if let Some(spool) = &self.spool {
-            spool.remove();
-        }
+    /// Removes the spool and the files of fields.
+    pub fn remove_spools(&self) {
+        self.spool.iter().chain(self.fields.iter().map(|(_, spool)| spool)).for_each(Spool::remove);
     }
 
     fn frame_path(&self, frame: usize, ending: &str) -> PathBuf {

@@ -5,6 +5,7 @@
 //! backends.json             what computes the run, see `backends.rs`
 //! frames/000000.ply ..      one file per frame and format; other formats beside it, see `frames.rs`
 //! surface/000000.obj        what the meshes say about their faces, if they do
+//! fields/velocities.f64     and the like, if asked for, see `frames.rs`
 //! stats.jsonl               one line per time step
 //! summary.json              written at the end
 //! checkpoint/state.npz      the state to resume from
@@ -20,7 +21,7 @@
 //! builds on is there.
 
 use super::differences::differences;
-use super::frames::FrameWriter;
+use super::frames::{FrameWriter, field_file};
 use super::layout::Layout;
 use super::lock::{LOCK, Lock};
 use super::saved::Saved;
@@ -28,21 +29,23 @@ use super::summary::Totals;
 use crate::recording::Recorder;
 use crate::simulator::{CollisionProblem, SimulationError, Simulator, StepStatistics};
 use bowknot_errors::counted;
-use bowknot_geometry::Point;
-use bowknot_io::{self as io, IoError, create_folder, write_ply};
+use bowknot_geometry::{Point, Vector};
+use bowknot_io::{self as io, Field, IoError, create_folder, write_ply};
 use bowknot_scene::Scene;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What tells that a folder holds a run.
-const PARTS: [&str; 11] = [
+const PARTS: [&str; 13] = [
     "scene.toml",
     super::backends::FILE,
     "frames",
     "frames.npz",
     "frames.pvd",
     "scene.usda",
+    "scene.glb",
+    "fields",
     "pc2",
     "surface",
     "stats.jsonl",
@@ -200,7 +203,10 @@ impl RunWriter {
         let width = scene.contact.delta;
         let layout = Layout::new(simulator.world());
         let dt = scene.simulation.dt;
-        let frames = FrameWriter::new(folder, &scene.output.formats, layout, spool, dt, width)?;
+        let asked = [scene.output.velocities, scene.output.contact_forces];
+        let fields = Field::ALL.into_iter().zip(asked).filter(|(_, asked)| *asked);
+        let fields = fields.map(|(field, _)| (field, folder.join(field_file(field)))).collect();
+        let frames = FrameWriter::new(folder, &scene.output.formats, layout, spool, fields, dt, width)?;
         frames.write_surface(&frames.layout.with_corners(&simulator.world().positions, &[]))?;
         Ok(Self {
             folder: folder.to_owned(),
@@ -278,7 +284,20 @@ impl RunWriter {
 
     fn write_frame(&self, simulator: &Simulator) -> Result<(), IoError> {
         let positions = self.frames.layout.with_corners(simulator.positions(), &self.present);
-        self.frames.write(simulator.step_index(), &positions)
+        let fields: Vec<Vec<Vector>> =
+            self.frames.fields().map(|field| self.values(simulator, field)).collect();
+        self.frames.write(simulator.step_index(), &positions, &fields)
+    }
+
+    /// A field on the vertices of a frame: zeros on the corners of half-spaces.
+    fn values(&self, simulator: &Simulator, field: Field) -> Vec<Vector> {
+        let collide = simulator.world().collision_vertices();
+        let mut values = match field {
+            Field::Velocity => simulator.velocities()[..collide].to_vec(),
+            Field::ContactForce => simulator.contact_forces(),
+        };
+        values.resize(self.frames.layout.vertices(), Vector::zeros());
+        values
     }
 
     fn append(&mut self, statistics: &StepStatistics) -> Result<(), IoError> {
@@ -340,6 +359,9 @@ fn prepare(folder: &Path, scene: &Scene) -> Result<(), IoError> {
     }
     if scene.output.record {
         create_folder(&folder.join("states"))?;
+    }
+    if scene.output.velocities || scene.output.contact_forces {
+        create_folder(&folder.join("fields"))?;
     }
     Ok(())
 }

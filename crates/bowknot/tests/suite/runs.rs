@@ -1,10 +1,11 @@
 use bowknot::check::{Judge, PathOptions, StateOptions};
+use bowknot::geometry::{Point, Vector};
 use bowknot::io::{FrameStack, Import, read_mesh};
 use bowknot::recording::States;
 use bowknot::run::{ExportOptions, Outcome, Progress, Rate, RunOptions, export, run};
 use bowknot::scene::Format;
 use bowknot::simulator::SimulationError;
-use bowknot::{Scene, World};
+use bowknot::{Scene, Simulator, World};
 use serde_json::Value;
 use std::fs;
 use std::ops::ControlFlow;
@@ -215,6 +216,78 @@ fn a_resumed_run_is_the_run_that_was_never_stopped() {
     };
     let stripped = |folder: &Path| lines(folder).into_iter().map(strip).collect::<Vec<_>>();
     assert_eq!(stripped(&whole), stripped(&parts));
+}
+
+#[test]
+fn runs_keep_velocities_and_contact_forces() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [whole, parts, plain, there] =
+        ["whole", "parts", "plain", "there"].map(|name| folder.path().join(name));
+    let formats = "output.formats=[\"ply\", \"vtu\", \"npz\", \"usd\", \"gltf\"]";
+    let on = ["output.velocities=true", "output.contact_forces=true", "output.checkpoint_every=2", formats];
+    go(&falling(9, &on), &options(&whole)).expect("a run");
+    run(&falling(9, &on), &options(&parts), &mut |progress: &Progress<'_>| match progress.step {
+        5 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    })
+    .expect("the first part");
+    // As if it had been killed later.
+    fs::copy(whole.join("fields/velocities.f64"), parts.join("fields/velocities.f64")).expect("a file");
+    go(&falling(9, &on), &RunOptions { resume: true, ..options(&parts) }).expect("the rest");
+    let exported = ExportOptions {
+        formats: vec![Format::Vtu, Format::Npz, Format::Usd, Format::Gltf],
+        out: there.clone(),
+        ..ExportOptions::default()
+    };
+    export(&whole, &exported, &mut |_, _| {}).expect("exported");
+    let fields = ["fields/velocities.f64", "fields/contact_forces.f64"];
+    let of = |folder: &Path, name: &str| fs::read(folder.join(name)).expect("a file");
+    for name in ["frames/000009.vtu", "frames.npz", "scene.usda", "scene.glb"].iter().chain(&fields) {
+        assert!(of(&whole, name) == of(&parts, name), "{name} differs after a resumption");
+    }
+    for name in ["frames.npz", "scene.glb"] {
+        assert!(of(&whole, name) == of(&there, name), "{name} differs after an export");
+    }
+    // Exports have triangles for the square of the ground, but the same vectors at the end of the file.
+    let tail = |folder: &Path| {
+        of(folder, "frames/000009.vtu").split_off(of(folder, "frames/000009.vtu").len() - 1000)
+    };
+    assert!(tail(&whole) == tail(&there), "the forces differ");
+    let text = fs::read_to_string(there.join("scene.usda")).expect("a stage");
+    assert!(
+        text.contains("vector3f[] velocities.timeSamples")
+            && text.contains("primvars:contactForce.timeSamples")
+    );
+    assert_eq!(names(&there), ["frames", "frames.npz", "frames.pvd", "scene.glb", "scene.usda"]);
+
+    // They are those of the simulator; the corners of the ground have none.
+    let mut simulator = Simulator::new(&falling(9, &[])).expect("a simulator");
+    (0..9).for_each(|_| drop(simulator.step().expect("a step")));
+    let count = simulator.world().collision_vertices();
+    let expected = [simulator.velocities()[..count].to_vec(), simulator.contact_forces()];
+    assert!(expected[1].iter().any(|force| force.z > 0.0), "the sheet lies on the ball");
+    for (name, expected) in fields.iter().zip(&expected) {
+        let bytes = of(&whole, name);
+        let frame = 24 * (count + 4);
+        assert_eq!(bytes.len(), 10 * frame);
+        let numbers = bytes[9 * frame..].as_chunks::<8>().0.iter().map(|&b| f64::from_le_bytes(b));
+        let expected: Vec<f64> = expected.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
+        assert_eq!(numbers.collect::<Vec<_>>(), [expected, vec![0.0; 12]].concat(), "{name}");
+    }
+    // What acts on the vertices of a body adds up to what acts on the body.
+    for name in ["sheet", "ball"] {
+        let world = simulator.world();
+        let vertices = world.bodies[world.index_of(name).expect("a body")].vertices.clone();
+        let sum: Vector = expected[1][vertices.start as usize..vertices.end as usize].iter().sum();
+        let wrench = simulator.contact_wrench(name, &Point::origin()).expect("a body");
+        assert!((sum - wrench.force).norm() < 1e-9 * (1.0 + sum.norm()), "{name}: {sum} {}", wrench.force);
+    }
+
+    // Nothing is kept of what nobody asks for, and a run cannot begin with it in its middle.
+    go(&falling(2, &[]), &options(&plain)).expect("a run");
+    assert!(!plain.join("fields").exists());
+    let error = go(&falling(4, &on), &RunOptions { resume: true, ..options(&plain) }).expect_err("too late");
+    assert!(error.to_string().contains("it has 0 frames, 3 are needed"), "{error}");
 }
 
 #[test]

@@ -39,7 +39,7 @@ impl FrameSource {
     /// - a mesh of any format that [`read_mesh`](crate::read_mesh) reads: one frame;
     /// - a point cache `NAME.pc2`, with its mesh `NAME.obj` or `NAME.ply` beside it;
     /// - a glTF scene `.gltf` or `.glb`, each node with a mesh a part, as its first animation moves them;
-    /// - a USD stage `.usda`, each mesh, set of curves or points a part;
+    /// - a USD stage `.usda`, or `.usd` if it is text, each mesh, set of curves or points a part;
     /// - a collection `.pvd` of VTK files with their times;
     /// - an archive `.npz`;
     /// - a folder of meshes of one ending (PLY, else OBJ, else VTU, else another), or of point caches; the
@@ -81,7 +81,7 @@ fn of_file(path: &Path, options: &FrameOptions) -> Result<FrameSource, IoError> 
         "npz" => of_archive(path),
         "pc2" => PointCaches::open(&[path.to_owned()]).map(FrameSource::of_animation),
         "gltf" | "glb" => GltfScene::open(path, options).map(FrameSource::of_animation),
-        "usda" => Stage::open(path, options).map(FrameSource::of_animation),
+        "usda" | "usd" | "usdc" | "usdz" => Stage::open(path, options).map(FrameSource::of_animation),
         "pvd" => Collection::open(path).map(FrameSource::of_animation),
         _ => Ok(FrameSource { store: Store::Files(vec![path.to_owned()]), import: Import::default() }),
     }

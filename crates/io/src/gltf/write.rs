@@ -193,7 +193,9 @@ impl Layout {
         let bytes = 4 * count * if kind == "VEC3" { 3 } else { 1 };
         self.views.push(json!({ "buffer": 0, "byteOffset": self.length, "byteLength": bytes }));
         self.length += bytes;
-        let mut accessor = json!({ "bufferView": self.views.len() - 1, "componentType": component, "count": count, "type": kind });
+        let view = self.views.len() - 1;
+        let mut accessor =
+            json!({ "bufferView": view, "componentType": component, "count": count, "type": kind });
         if let Some([low, high]) = bounds {
             (accessor["min"], accessor["max"]) = (json!(low), json!(high));
         }

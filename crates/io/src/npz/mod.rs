@@ -6,4 +6,4 @@ mod stack;
 
 pub use archive::{Archive, Shape, write_archive};
 pub use frames::FrameStack;
-pub use stack::write_frame_stack;
+pub use stack::{write_frame_stack, write_frame_stack_with_fields};

@@ -3,6 +3,7 @@
 use super::frames::element_table;
 use crate::atomic::write_atomic;
 use crate::error::IoError;
+use crate::field::Field;
 use crate::mesh::MeshView;
 use ndarray::Array1;
 use ndarray_npy::{WriteNpyError, WriteNpyExt};
@@ -23,6 +24,21 @@ pub fn write_frame_stack(
     frames: usize,
     mut read: impl FnMut(usize, &mut Vec<u8>) -> std::io::Result<()>,
 ) -> Result<(), IoError> {
+    write_frame_stack_with_fields(path, mesh, frames, &[], |_, frame, bytes| read(frame, bytes))
+}
+
+/// As [`write_frame_stack`], with an array `[f,n,3]` for each field: `V` [m/s], `C` [N]. `read` appends the
+/// vectors of a field in a frame, or the coordinates if it gets none.
+///
+/// # Errors
+/// As [`write_frame_stack`].
+pub fn write_frame_stack_with_fields(
+    path: &Path,
+    mesh: &MeshView<'_>,
+    frames: usize,
+    fields: &[Field],
+    mut read: impl FnMut(Option<Field>, usize, &mut Vec<u8>) -> std::io::Result<()>,
+) -> Result<(), IoError> {
     let vertices = mesh.obstacle.len();
     let quads = mesh.quads.iter().flat_map(|&[i, j, k, l]| [[i, j, k], [i, k, l]]);
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().copied().chain(quads).collect();
@@ -32,13 +48,17 @@ pub fn write_frame_stack(
         let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
         // 64-bit sizes where they are needed only: some readers know no others.
         let size = 24 * vertices as u64 * frames as u64;
-        zip.start_file("X.npy", options.large_file(size > u64::from(u32::MAX) - 1024))?;
-        zip.write_all(&npy_header(&format!("({frames}, {vertices}, 3)")))?;
-        let mut bytes = Vec::new();
-        for frame in 0..frames {
-            bytes.clear();
-            read(frame, &mut bytes)?;
-            zip.write_all(&bytes)?;
+        for field in std::iter::once(None).chain(fields.iter().copied().map(Some)) {
+            let name = field.map_or("X", Field::array);
+            let large = size > u64::from(u32::MAX) - 1024;
+            zip.start_file(format!("{name}.npy"), options.large_file(large))?;
+            zip.write_all(&npy_header(&format!("({frames}, {vertices}, 3)")))?;
+            let mut bytes = Vec::new();
+            for frame in 0..frames {
+                bytes.clear();
+                read(field, frame, &mut bytes)?;
+                zip.write_all(&bytes)?;
+            }
         }
         let mut array = |name: &str, write: &dyn Fn(&mut ZipWriter<_>) -> Result<(), WriteNpyError>| {
             zip.start_file(format!("{name}.npy"), options)?;

@@ -53,6 +53,69 @@ fn grids_say_where_their_arrays_are() {
 }
 
 #[test]
+fn fields_stand_beside_the_positions() {
+    let folder = folder();
+    let mesh = sample();
+    let velocities: Vec<Vector> = (0..6).map(|k| Vector::new(f64::from(k), 0.5, -1.0 / 3.0)).collect();
+    let forces: Vec<Vector> = (0..6).map(|k| Vector::new(0.0, f64::from(k * k), 7.0)).collect();
+    let fields = [
+        FieldValues { field: Field::Velocity, values: &velocities },
+        FieldValues { field: Field::ContactForce, values: &forces },
+    ];
+    let path = folder.path().join("a.vtu");
+    write_vtu_with_fields(&path, &mesh.view(), &fields).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let start = bytes.windows(2).position(|w| w == b"\n_").unwrap() + 2;
+    let head = String::from_utf8_lossy(&bytes[..start]).into_owned();
+    for (name, values) in [("velocity", &velocities), ("contact_force", &forces)] {
+        let tag =
+            head.split(&format!("type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"3\"")).nth(1).unwrap();
+        let at: usize = tag.split('"').nth(3).unwrap().parse().unwrap();
+        let numbers = &bytes[start + at..][..8 + 24 * 6];
+        assert_eq!(numbers[..8], 144_u64.to_le_bytes());
+        let expected: Vec<u8> =
+            values.iter().flat_map(|v| [v.x, v.y, v.z]).flat_map(f64::to_le_bytes).collect();
+        assert!(numbers[8..] == expected, "{name}");
+    }
+    assert!(head.contains("</PointData>\n</Piece>") && bytes.ends_with(b"\n</AppendedData>\n</VTKFile>\n"));
+
+    let of = |field: Option<Field>, frame: usize| -> Vec<Point> {
+        let shift = Vector::new(0.0, 0.0, frame as f64);
+        match field {
+            None => mesh.positions.iter().map(|p| p + shift).collect(),
+            Some(Field::Velocity) => velocities.iter().map(|v| Point::from(v + shift)).collect(),
+            Some(Field::ContactForce) => forces.iter().map(|v| Point::from(v + shift)).collect(),
+        }
+    };
+    let path = folder.path().join("a.npz");
+    write_frame_stack_with_fields(&path, &mesh.view(), 2, &Field::ALL, |field, frame, bytes| {
+        bytes.extend(of(field, frame).iter().flat_map(|p| [p.x, p.y, p.z]).flat_map(f64::to_le_bytes));
+        Ok(())
+    })
+    .unwrap();
+    let stack = FrameStack::read(&path).unwrap();
+    assert_eq!((stack.len(), stack.frame(1)), (2, Some(of(None, 1))));
+    let mut archive = npz::Archive::open(&path).unwrap();
+    let (numbers, shape) = archive.array("C").unwrap().unwrap();
+    assert_eq!(shape, [2, 6, 3]);
+    assert_eq!(numbers[18 + 15..18 + 18], [0.0, 25.0, 8.0]);
+    assert_eq!(archive.array("V").unwrap().unwrap().0[15..18], [5.0, 0.5, -1.0 / 3.0]);
+
+    let path = folder.path().join("a.usda");
+    let body = UsdBody { name: "a", elements: mesh.view(), obstacle: false, width: 0.25 };
+    write_usda_with_fields(&path, &[body], 2, 50.0, &Field::ALL, |field, _, frame| Ok(of(field, frame)))
+        .unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    for line in
+        ["        vector3f[] velocities.timeSamples = {", "        vector3f[] primvars:contactForce ("]
+    {
+        assert_eq!(text.lines().filter(|l| *l == line).count(), 3, "mesh, strands, particles: {line}");
+    }
+    assert!(text.contains("            1: [(0.0, 25.0, 8.0)],\n"), "{text}");
+    assert_eq!(FrameSource::open(&path).unwrap().len(), 2);
+}
+
+#[test]
 fn stages_name_everything_once() {
     let folder = folder();
     let path = folder.path().join("a.usda");

@@ -200,7 +200,8 @@ fn faults_of_stages_have_their_place() {
     let changing =
         "int[] faceVertexCounts = [3]\nint[] faceVertexIndices.timeSamples = { 0: [0, 1, 2], 4: [0, 2, 1] }";
     for (text, expected) in [
-        ("PXR-USDC".to_owned(), "a.usda:1: it does not begin with #usda"),
+        ("PXR-USDC\0".to_owned(), "a.usda: a binary stage, which is not read: `usdcat --flatten"),
+        ("#usd".to_owned(), "a.usda:1: it does not begin with #usda"),
         ("#usda 1.0\n".to_owned(), "a.usda: no meshes, curves or points in it"),
         (mesh("int ="), "a.usda:4: a word is missing before '='"),
         (mesh("point3f[] points = [(0, 0, 0)"), "a.usda:5: ']' is missing before '}'"),

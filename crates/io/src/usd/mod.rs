@@ -14,6 +14,7 @@ pub(crate) use read::Stage;
 
 use crate::atomic::write_atomic;
 use crate::error::IoError;
+use crate::field::Field;
 use crate::mesh::MeshView;
 use crate::surface::Surface;
 use attributes::Materials;
@@ -49,6 +50,22 @@ pub fn write_usda(
     rate: f64,
     mut read: impl FnMut(usize, usize) -> std::io::Result<Vec<Point>>,
 ) -> Result<(), IoError> {
+    write_usda_with_fields(path, bodies, frames, rate, &[], |_, body, frame| read(body, frame))
+}
+
+/// As [`write_usda`], with time samples of the fields: `velocities` [m/s], `primvars:contactForce` [N].
+/// `read(field, body, frame)` gives the vectors of a field, or the positions if it gets none.
+///
+/// # Errors
+/// As [`write_usda`].
+pub fn write_usda_with_fields(
+    path: &Path,
+    bodies: &[UsdBody<'_>],
+    frames: usize,
+    rate: f64,
+    fields: &[Field],
+    mut read: impl FnMut(Option<Field>, usize, usize) -> std::io::Result<Vec<Point>>,
+) -> Result<(), IoError> {
     let mut names = names::identifiers(bodies.iter().map(|body| body.name).chain(["Materials"]));
     let surfaces = bodies.iter().filter_map(|body| body.elements.surface);
     let materials = Materials::new(surfaces, names.pop().unwrap_or_default());
@@ -68,7 +85,7 @@ pub fn write_usda(
                 let mut extents = Vec::with_capacity(frames);
                 out.write_all(b"        point3f[] points.timeSamples = {\n")?;
                 for frame in 0..frames {
-                    let positions = read(index, frame)?;
+                    let positions = read(None, index, frame)?;
                     let points = || prim.vertices.iter().filter_map(|&v| positions.get(v as usize));
                     extents.push(extent(points(), pad));
                     write!(out, "            {frame}: [")?;
@@ -85,8 +102,11 @@ pub fn write_usda(
                     out.write_all(b"],\n")?;
                 }
                 out.write_all(b"        }\n")?;
+                for &field in fields {
+                    prim.write_field(out, field, frames, |frame| read(Some(field), index, frame))?;
+                }
                 if let Some(surface) = prim.surface {
-                    attributes::write_normals(out, surface, frames, |frame| read(index, frame))?;
+                    attributes::write_normals(out, surface, frames, |frame| read(None, index, frame))?;
                     attributes::write_subsets(out, surface, body.name, &materials)?;
                 }
                 out.write_all(b"    }\n\n")?;
@@ -203,6 +223,33 @@ impl<'a> Prim<'a> {
         writeln!(out, "        custom bool {} = {}", read::OBSTACLE, u8::from(body.obstacle))?;
         let color = if body.obstacle { "(0.6, 0.6, 0.62)" } else { "(0.75, 0.35, 0.25)" };
         writeln!(out, "        color3f[] primvars:displayColor = [{color}]")
+    }
+}
+
+impl Prim<'_> {
+    /// The vectors of its points in all frames.
+    fn write_field(
+        &self,
+        out: &mut impl Write,
+        field: Field,
+        frames: usize,
+        mut read: impl FnMut(usize) -> std::io::Result<Vec<Point>>,
+    ) -> std::io::Result<()> {
+        let name = field.attribute();
+        if field != Field::Velocity {
+            let metadata = "(\n            interpolation = \"vertex\"\n        )";
+            writeln!(out, "        vector3f[] {name} {metadata}")?;
+        }
+        writeln!(out, "        vector3f[] {name}.timeSamples = {{")?;
+        for frame in 0..frames {
+            let values = read(frame)?;
+            write!(out, "            {frame}: [")?;
+            for (k, value) in self.vertices.iter().filter_map(|&v| values.get(v as usize)).enumerate() {
+                write_point(out, k, value)?;
+            }
+            out.write_all(b"],\n")?;
+        }
+        out.write_all(b"        }\n")
     }
 }
 

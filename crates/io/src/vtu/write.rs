@@ -3,6 +3,7 @@
 
 use crate::atomic::write_atomic;
 use crate::error::IoError;
+use crate::field::FieldValues;
 use crate::mesh::MeshView;
 use std::io::Write;
 use std::path::Path;
@@ -19,6 +20,19 @@ const QUAD: u8 = 9;
 /// # Errors
 /// The system's refusal, with the path.
 pub fn write_vtu(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
+    write_vtu_with_fields(path, mesh, &[])
+}
+
+/// As [`write_vtu`], with a point array of doubles for each field, of as many values as there are vertices:
+/// `velocity` [m/s], `contact_force` [N].
+///
+/// # Errors
+/// As [`write_vtu`].
+pub fn write_vtu_with_fields(
+    path: &Path,
+    mesh: &MeshView<'_>,
+    fields: &[FieldValues<'_>],
+) -> Result<(), IoError> {
     let points = mesh.positions.len();
     let counts =
         [(TRIANGLE, 3, mesh.triangles.len()), (QUAD, 4, mesh.quads.len()), (LINE, 2, mesh.strands.len())];
@@ -27,14 +41,18 @@ pub fn write_vtu(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
     let cells: usize = counts.iter().map(|(_, _, count)| count).sum();
     let corners: usize = counts.iter().map(|(_, size, count)| size * count).sum();
 
-    let arrays = [
+    let mut arrays = vec![
         ("<Points>", "Float64", "Points", 3, 24 * points, "</Points>\n<Cells>"),
         ("", "Int32", "connectivity", 1, 4 * corners, ""),
         ("", "Int64", "offsets", 1, 8 * cells, ""),
         ("", "UInt8", "types", 1, cells, "</Cells>\n<PointData>"),
         ("", "Int32", "body", 1, 4 * points, ""),
-        ("", "UInt8", "obstacle", 1, points, "</PointData>"),
+        ("", "UInt8", "obstacle", 1, points, ""),
     ];
+    arrays.extend(fields.iter().map(|f| ("", "Float64", f.field.name(), 3, 24 * points, "")));
+    if let Some(last) = arrays.last_mut() {
+        last.5 = "</PointData>";
+    }
     write_atomic(path, |out| {
         write!(
             out,
@@ -80,6 +98,13 @@ pub fn write_vtu(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
         out.write_all(&length(points))?;
         for index in 0..points {
             out.write_all(&[u8::from(mesh.obstacle.get(index).copied().unwrap_or(false))])?;
+        }
+        for field in fields {
+            out.write_all(&length(24 * points))?;
+            for index in 0..points {
+                let value = field.values.get(index).copied().unwrap_or_default();
+                value.iter().try_for_each(|component| out.write_all(&component.to_le_bytes()))?;
+            }
         }
         out.write_all(b"\n</AppendedData>\n</VTKFile>\n")
     })

@@ -21,6 +21,22 @@ impl Simulator {
             .collect()
     }
 
+    /// What all [contacts](Self::contacts) exert on each vertex that collides [N]: of a contact within an
+    /// element by the weights of its closest point. Half-spaces have no vertices, so the forces on them are
+    /// not among these.
+    pub fn contact_forces(&self) -> Vec<Vector> {
+        let mut forces = vec![Vector::zeros(); self.world.collision_vertices()];
+        for contact in self.contacts() {
+            for (vertex, weight) in contact.vertices.into_iter().zip(contact.weights) {
+                // The weights of the second side are negative, as is the force on it.
+                if weight != 0.0 {
+                    forces[vertex as usize] += contact.force * weight;
+                }
+            }
+        }
+        forces
+    }
+
     /// What all [contacts](Self::contacts) exert on a body, an obstacle or a half-space, with the torque
     /// about a point [m]: the load on a finger of a robot, in the axes of the scene. Each force acts at the
     /// contact's point on the body that is asked for; the points of both sides are a gap apart.

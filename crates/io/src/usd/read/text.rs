@@ -20,8 +20,13 @@ const DEEPEST: usize = 200;
 pub(super) fn read_layer(path: &Path) -> Result<Layer, IoError> {
     let mut file = File::open(path).map_err(|source| IoError::system("read", path, source))?;
     let mut magic = [0; 5];
-    let begins = file.read_exact(&mut magic).is_ok() && &magic == b"#usda";
-    if !begins {
+    let begins = file.read_exact(&mut magic).is_ok();
+    // A crate file, or an archive.
+    if magic.starts_with(b"PXR-") || magic.starts_with(b"PK\x03\x04") {
+        let message = "a binary stage, which is not read: `usdcat --flatten IN -o OUT.usda` makes text of it";
+        return Err(IoError::content(path, Place::File, message));
+    }
+    if !begins || &magic != b"#usda" {
         return Err(IoError::content(path, Place::Line(1), "it does not begin with #usda"));
     }
     let mut parser =
