@@ -79,3 +79,27 @@ def test_what_is_refused(parts: tuple[Path, Path], tmp_path: Path) -> None:
     }.items():
         with pytest.raises(bowknot.InputError, match=message):
             call()
+
+
+def test_binary_usd(tmp_path: Path) -> None:
+    pytest.importorskip("pxr")
+    from pxr import Usd, UsdGeom
+
+    stage = Usd.Stage.CreateNew(str(tmp_path / "two.usdc"))
+    for name, points in {"still": [(0, 0, 0), (1, 0, 0), (0, 1, 0)], "moving": None}.items():
+        mesh = UsdGeom.Mesh.Define(stage, f"/World/{name}")
+        mesh.CreateFaceVertexCountsAttr([3])
+        mesh.CreateFaceVertexIndicesAttr([0, 1, 2])
+        if points:
+            mesh.CreatePointsAttr(points)
+        else:
+            for frame, z in enumerate([2.0, 1.0, -0.25]):
+                mesh.CreatePointsAttr().Set([(0.2, 0.2, z), (0.3, 0.2, z + 2), (5, 5, z + 1)], frame)
+    stage.Save()
+    report = bowknot.check_files(tmp_path / "two.usdc")
+    assert (report.states, report.intersecting_states) == (3, 1)
+    assert report.pairs[0]["parts"] == ["still", "moving"]
+    assert report.files[2]["file"].startswith(str(tmp_path / "two.usdc"))
+    (tmp_path / "bad.usdc").write_bytes(b"PXR-USDC nothing")
+    with pytest.raises(bowknot.InputError, match="bad.usdc: usd-core refuses it"):
+        bowknot.check_files(tmp_path / "bad.usdc")

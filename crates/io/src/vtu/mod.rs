@@ -14,4 +14,4 @@ mod write;
 mod tests;
 
 pub(crate) use read::read_vtu;
-pub use write::{write_pvd, write_vtu};
+pub use write::{write_pvd, write_vtu, write_vtu_with_fields};

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable
+from contextlib import ExitStack
 from types import SimpleNamespace
 
 from . import _native
@@ -11,6 +13,7 @@ from ._call import call
 from ._errors import InputError
 from ._info import Info
 from ._meshes import is_path
+from ._usd import as_text
 
 
 class FilesReport(Info):
@@ -61,7 +64,8 @@ def check_files(
     Parameters
     ----------
     paths : path, or several
-        Mesh files, animations (USD, glTF, PC2 with its mesh, PVD, NPZ), folders of frames, folders of runs.
+        Mesh files, animations (USD, glTF, PC2 with its mesh, PVD, NPZ), folders of frames, folders of runs. Binary
+        USD is read if usd-core is installed.
     between_frames : bool
         Whether the straight paths between frames are judged too. What meets there is a hint: how it moved is not
         known. The paths of a run's ``trace`` are always judged, and count.
@@ -105,7 +109,13 @@ def check_files(
         min_distance=None if min_distance is None else float(min_distance),
         limit=count_of("limit", limit),
     )
-    return FilesReport(call(_native.check_files, [os.fspath(path) for path in given], judging))
+    with ExitStack() as opened:
+        texts = [opened.enter_context(as_text(path)) for path in given]
+        report = call(_native.check_files, texts, judging)
+    for text, path in zip(texts, map(os.fspath, given)):
+        if text != path:
+            report = report.replace(json.dumps(text)[1:-1], json.dumps(path)[1:-1])
+    return FilesReport(report)
 
 
 def _names(names: str | Iterable[str]) -> list[str]:

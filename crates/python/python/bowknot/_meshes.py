@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _arrays, _native
 from ._call import call
 from ._errors import InputError
+from ._usd import as_text
 
 #: Cells that can be used, by their numbers in VTK.
 _VTK_CELLS = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 10: "tetra"}
@@ -171,12 +172,12 @@ def _three(points: Any) -> Any:
 
 
 def read_mesh(path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0) -> Mesh:
-    """Reads a mesh file: OBJ, PLY, STL, Gmsh (``.msh``), Medit (``.mesh``), TetGen, VTU, ``.t``, ``.seg``.
+    """Reads a mesh file: OBJ, PLY, STL, Gmsh (``.msh``), Medit (``.mesh``), TetGen, VTU, USD, glTF, ``.t``, ``.seg``.
 
     Parameters
     ----------
     path : path
-        The file; the ending of its name tells the format.
+        The file; the ending of its name tells the format. Binary USD needs usd-core.
     up : {"z", "y", "x"}
         The axis of the file that points up; in Bowknot, z does.
     scale : float
@@ -192,4 +193,5 @@ def read_mesh(path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0
     InputError
         A missing or malformed file, with the place.
     """
-    return Mesh(**call(_native.read_mesh, path, up, float(scale)))
+    with as_text(path) as text:
+        return Mesh(**call(_native.read_mesh, text, up, float(scale)))
