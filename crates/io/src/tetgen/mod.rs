@@ -78,9 +78,7 @@ fn points(text: &str, import: &Import, groups: &mut Numbered) -> Result<(Vec<Poi
         }
         positions.push(import.finite_point(raw).map_err(|message| line.fault(message))?);
         // TetGen takes missing attributes and markers for 0.
-        for _ in 0..attributes {
-            line.optional("an attribute", 0.0)?;
-        }
+        line.skip(attributes);
         let marker: i64 =
             if has_markers { line.optional("a boundary marker, a whole number", 0)? } else { 0 };
         if marker != 0 {
@@ -195,6 +193,14 @@ impl Line<'_> {
     fn optional<T: FromStr>(&mut self, what: &str, default: T) -> Result<T, Fault> {
         let mut ahead = self.words.clone();
         if ahead.next().is_none() { Ok(default) } else { self.number(what) }
+    }
+
+    /// Skips words, or what is left of them.
+    fn skip(&mut self, count: usize) {
+        // Not a loop over the count, which may be any number: this ends with the line.
+        if let Some(last) = count.checked_sub(1) {
+            self.words.nth(last);
+        }
     }
 
     fn fault(&self, message: impl Into<String>) -> Fault {

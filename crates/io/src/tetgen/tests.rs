@@ -102,3 +102,9 @@ fn faults_name_the_file_and_the_line() {
     let error = read_tetgen(&folder.path().join("lone.node"), &Import::default()).unwrap_err().to_string();
     assert!(error.contains("lone.ele: no such file"), "{error}");
 }
+
+#[test]
+fn an_absurd_number_of_attributes_ends_with_the_line() {
+    let mesh = read(&NODE.replacen("5 3 1 1", &format!("5 3 {} 1", usize::MAX), 1), ELE, "a.1.ele").unwrap();
+    assert_eq!((mesh.tets.len(), mesh.groups.get("marker-2")), (2, None));
+}
