@@ -57,7 +57,8 @@ def _simulate(scene):
     contacts = None if cut else pipeline.contacts()
     now, following, control = model.state(), model.state(), model.control()
     dt = 1.0 / (FPS * substeps)
-    yield now.particle_q.numpy()
+    # On the CPU, arrays of NumPy share the memory of the state.
+    yield now.particle_q.numpy().copy()
     for frame in range(scene.frames):
         solver.rebuild_bvh(now)
         for step in range(substeps):
@@ -68,7 +69,7 @@ def _simulate(scene):
                 pipeline.collide(now, contacts)
             solver.step(now, following, control, contacts, dt)
             now, following = following, now
-        yield now.particle_q.numpy()
+        yield now.particle_q.numpy().copy()
 
 
 def _model(scene):

@@ -8,7 +8,7 @@ FPS = 60
 GRAVITY = 9.81
 
 # Material of the solids, which all solvers can express: Young's modulus [Pa], Poisson's ratio, density [kg/m3].
-YOUNG, POISSON, DENSITY = 5.0e4, 0.3, 100.0
+YOUNG, POISSON, DENSITY = 5.0e4, 0.3, 300.0
 
 
 @dataclass
@@ -123,7 +123,7 @@ def ball(radius, center, divisions=3):
 
 def ground():
     """Two triangles at z = 0."""
-    corners = np.array([(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)], float)
+    corners = np.array([(-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0)], float)
     return Body("ground", corners, np.array([(0, 1, 2), (0, 2, 3)]))
 
 
@@ -144,12 +144,12 @@ def twist(count=28):
 
 
 def blocks(count=6):
-    """Four soft blocks that fall in a heap."""
-    places = [(0.0, 0.0), (0.1, 0.02), (-0.08, 0.1), (0.05, -0.1)]
+    """Four soft blocks that fall onto each other."""
+    places = [(0.0, 0.0), (0.05, 0.02), (-0.04, 0.05), (0.03, -0.05)]
     solids = [
         block(f"block{k}", (x, y, 0.2 + 0.35 * k), 25.0 * k, 0.3, count) for k, (x, y) in enumerate(places)
     ]
-    return Scene("blocks", "four soft blocks in a heap", solids, 120, ground=True, obstacles=[ground()])
+    return Scene("blocks", "four soft blocks onto each other", solids, 120, ground=True, obstacles=[ground()])
 
 
 SCENES = {"drape": drape, "twist": twist, "blocks": blocks}
