@@ -50,6 +50,7 @@ def figures(scene, motion, report):
         "hints_between_frames": report["hints_between_frames"],
         "largest_stretch": max(stretch),
         "final_stretch": stretch[-1],
+        "lowest_m": float(motion[:, :, 2].min()),
         "final_lowest_m": float(motion[-1][:, 2].min()),
         "final_highest_m": float(motion[-1][:, 2].max()),
     }

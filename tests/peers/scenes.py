@@ -38,7 +38,7 @@ class Scene:
     bodies: list[Body]
     frames: int
     gravity: float = GRAVITY
-    ground: bool = False
+    ground: bool = False  # the plane z = 0, which has no mesh and is not judged
     ball: tuple[float, tuple[float, float, float]] | None = None  # radius and center
     turn: float = 0.0  # rate of the two ends of body 0 about the x axis [rad/s]
     obstacles: list[Body] = field(default_factory=list)  # meshes to judge against
@@ -121,12 +121,6 @@ def ball(radius, center, divisions=3):
     return Body("ball", points + center, faces)
 
 
-def ground():
-    """Two triangles at z = 0."""
-    corners = np.array([(-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0)], float)
-    return Body("ground", corners, np.array([(0, 1, 2), (0, 2, 3)]))
-
-
 def drape(count=17):
     """Three cloths that fall over a ball onto each other: sizes and places of MuJoCo's model/flex/drape.xml."""
     places = [(0.0, 0.0, 0.68), (0.06, -0.04, 0.78), (-0.05, 0.05, 0.88)]
@@ -134,7 +128,7 @@ def drape(count=17):
     round_thing = (0.3, (0.0, 0.0, 0.3))
     return Scene(
         "drape", "three cloths over a ball", cloths, 120, ground=True, ball=round_thing,
-        obstacles=[ball(*round_thing), ground()],
+        obstacles=[ball(*round_thing)],
     )
 
 
@@ -149,7 +143,7 @@ def blocks(count=6):
     solids = [
         block(f"block{k}", (x, y, 0.2 + 0.35 * k), 25.0 * k, 0.3, count) for k, (x, y) in enumerate(places)
     ]
-    return Scene("blocks", "four soft blocks onto each other", solids, 120, ground=True, obstacles=[ground()])
+    return Scene("blocks", "four soft blocks onto each other", solids, 120, ground=True)
 
 
 SCENES = {"drape": drape, "twist": twist, "blocks": blocks}

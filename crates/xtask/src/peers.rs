@@ -3,12 +3,11 @@
 //! The solvers are Python packages in an environment of their own. Their runs take minutes each and are no part of
 //! CI; the tests of the scripts are.
 
+use crate::workspace::target_folder;
 use crate::{bowknot, venv};
 use std::io::{Error, Result};
 use std::path::Path;
 use std::process::{Command, ExitCode};
-
-use crate::workspace::target_folder;
 
 /// Makes the runs that are not there yet, judges all, and writes what `docs/judge.md` shows of them. The options go
 /// to the script.
