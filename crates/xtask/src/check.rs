@@ -4,7 +4,7 @@
 //! compiled. The tests come last and nothing follows them: the log ends with the test runner's own lines.
 
 use crate::workspace::{cargo, root, target_folder};
-use crate::{bowknot, docs, nightly, readers, venv, wheel};
+use crate::{bowknot, docs, nightly, peers, readers, venv, wheel};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -104,11 +104,12 @@ fn all_steps(root: &Path) -> Vec<Step> {
         steps.push(Step { run: run_afresh, ..Step::new("export", readers::export(&target)) });
         let read = readers::read(root, &target);
         steps.push(Step { run: readers::run, ..Step::new("read exports", read) });
+        steps.push(Step::new("peers", peers::tests(root, &target)));
         steps.push(Step { run: wheel::build, ..Step::new("wheel", wheel::command(root, &target)) });
         steps.push(Step { run: wheel::test, ..Step::new("python", wheel::tests(root, &target)) });
     } else {
         println!(
-            "==> read exports, wheel, python: skipped, because Python 3.11 with venv is missing: apt-get install \
+            "==> read exports, peers, wheel, python: skipped, because Python 3.11 with venv is missing: apt-get install \
              python3-venv"
         );
     }

@@ -6,6 +6,7 @@
 //! | `faults` | kills runs, damages files and fills disks, for longer than CI does |
 //! | `pictures` | draws the built-in scenes into `assets/pictures` |
 //! | `notebooks` | executes the notebooks of the documentation |
+//! | `peers` | runs three scenes in other solvers and judges them, for `docs/judge.md` |
 //! | `miri` | runs unit tests of the numerical crates under Miri |
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
 //! | `soak` | draws collision problems for minutes or hours, and judges every accepted step |
@@ -26,6 +27,7 @@ mod miri;
 mod mutations;
 mod nightly;
 mod notebooks;
+mod peers;
 mod pictures;
 mod readers;
 mod soak;
@@ -42,6 +44,7 @@ Usage: cargo xtask check [--fast]
        cargo xtask faults [--kills N] \
 [--seeds N]
        cargo xtask pictures [SCENE..]
+       cargo xtask peers [--again] [PEER/SCENE..]
        cargo xtask hashes [--scenes A,B] [--jobs N]
        \
 cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
@@ -70,6 +73,9 @@ of CI,
 inputs of the readers, in halves of what CI tries [default: 20]
 pictures  run built-in scenes, all or those \
 named, and draw them into assets/pictures; needs a graphics driver
+peers     run three scenes in Newton, MuJoCo, rapier and Bowknot, those that are not in out/peers yet, judge them
+          all, and write the tables of docs/judge.md; needs Python with venv
+          --again       run again what is there
 hashes    run built-in scenes at a small \
 scale on one thread each, and print for each its name, the number of its frames
           and a hash of all \
@@ -121,6 +127,7 @@ fn main() -> ExitCode {
         ["pictures", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             pictures::run(&workspace::root(), names)
         }
+        ["peers", options @ ..] => peers::run(&workspace::root(), options),
         ["hashes", options @ ..] => match hashes::Options::parse(options) {
             Ok(options) => hashes::run(&workspace::root(), &options),
             Err(message) => {
