@@ -49,7 +49,7 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
         listed: options.list,
     };
     let bar = Bar::new(0, "states", false);
-    let mut watch = Watch { options, bar, is_shown: false, notes: Vec::new(), failure: None };
+    let mut watch = Watch { options, bar, is_shown: false, notes: Vec::new(), smallest: None, failure: None };
     let judged = judge_files(&options.paths, &params, &mut watch);
     watch.bar.finish();
     if let Some(failure) = watch.failure {
@@ -65,7 +65,12 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
     } else {
         output::print(&text::of(&report, options))?;
     }
-    watch.notes.iter().for_each(|note| eprintln!("{note}"));
+    for note in &watch.notes {
+        if options.json { eprintln!("{note}") } else { output::print(note)? }
+    }
+    if let Some(smallest) = watch.smallest {
+        eprintln!("{smallest}");
+    }
     Ok(if report.clear { Exit::Success } else { Exit::CheckFailed })
 }
 
@@ -83,6 +88,8 @@ struct Watch<'a> {
     is_shown: bool,
     /// What was written, in words.
     notes: Vec<String>,
+    /// The smallest state that was written, in words.
+    smallest: Option<String>,
     failure: Option<Failure>,
 }
 
@@ -101,37 +108,38 @@ impl JudgingObserver for Watch<'_> {
         if std::mem::replace(&mut self.is_shown, true) {
             return true;
         }
-        match written(self.options, state) {
-            Ok(notes) => self.notes = notes,
-            Err(failure) => self.failure = Some(failure),
-        }
+        self.failure = self.write(state).err();
         self.failure.is_none()
     }
 }
 
-/// Writes the files that show a state that intersects. Returns what was written, in words.
-fn written(options: &CheckOptions, state: &JudgedState<'_>) -> Result<Vec<String>, Failure> {
-    let mut notes = Vec::new();
-    let all = StateOptions { limit: usize::MAX, distance: false };
-    if let Some(file) = &options.dump {
-        let report = state.judge.check_state(state.positions, &all).map_err(Failure::input)?;
-        let offending = state.judge.offending_mesh(state.positions, &report.intersections);
-        let of_vertex = |list: Option<&Vec<u32>>| -> Vec<u32> {
-            list.map_or_else(Vec::new, |list| offending.vertices.iter().map(|&v| list[v as usize]).collect())
-        };
-        let flags = |list: &Vec<bool>| offending.vertices.iter().map(|&v| list[v as usize]).collect();
-        let obstacle: Vec<bool> = state.mesh.obstacle.as_ref().map_or_else(Vec::new, flags);
-        crate::dump::write(file, &offending, &obstacle, &of_vertex(state.mesh.body.as_ref()))?;
-        let triangles = counted(offending.triangles.len(), "triangle", "triangles");
-        notes.push(format!("wrote {triangles} to {}", file.display()));
+impl Watch<'_> {
+    /// Writes the files that show a state that intersects.
+    fn write(&mut self, state: &JudgedState<'_>) -> Result<(), Failure> {
+        let Self { options, notes, smallest, .. } = self;
+        let all = StateOptions { limit: usize::MAX, distance: false };
+        if let Some(file) = &options.dump {
+            let report = state.judge.check_state(state.positions, &all).map_err(Failure::input)?;
+            let offending = state.judge.offending_mesh(state.positions, &report.intersections);
+            let of_vertex = |list: Option<&Vec<u32>>| -> Vec<u32> {
+                list.map_or_else(Vec::new, |list| {
+                    offending.vertices.iter().map(|&v| list[v as usize]).collect()
+                })
+            };
+            let flags = |list: &Vec<bool>| offending.vertices.iter().map(|&v| list[v as usize]).collect();
+            let obstacle: Vec<bool> = state.mesh.obstacle.as_ref().map_or_else(Vec::new, flags);
+            crate::dump::write(file, &offending, &obstacle, &of_vertex(state.mesh.body.as_ref()))?;
+            let triangles = counted(offending.triangles.len(), "triangle", "triangles");
+            notes.push(format!("wrote {triangles} to {}", file.display()));
+        }
+        if let Some(file) = &options.dump_on_failure {
+            let states = state.problem.cloned().unwrap_or_else(|| smallest::state_of(state));
+            *smallest = Some(smallest::write(file, &states)?);
+        }
+        #[cfg(feature = "render")]
+        if let Some(file) = &options.picture {
+            notes.push(picture::write(file, state)?);
+        }
+        Ok(())
     }
-    if let Some(file) = &options.dump_on_failure {
-        let states = state.problem.cloned().unwrap_or_else(|| smallest::state_of(state));
-        notes.push(smallest::write(file, &states)?);
-    }
-    #[cfg(feature = "render")]
-    if let Some(file) = &options.picture {
-        notes.push(picture::write(file, state)?);
-    }
-    Ok(notes)
 }
