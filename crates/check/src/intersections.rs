@@ -1,14 +1,14 @@
 //! Intersections of a state, by exact predicates.
 
+use crate::body_pairs::by_bodies;
 use crate::error::CheckError;
 use crate::judge::Judge;
 use crate::path::is_above;
 use crate::primitives::{Scene, closest_points, gather, pairs};
-use crate::report::{BodyPair, Intersection, PairClass, StateOptions, StateReport};
+use crate::report::{Intersection, PairClass, StateOptions, StateReport};
 use crate::walk::Meeting;
 use bowknot_geometry::{Point, intersection};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// A pair that intersects.
 type FoundPair = (PairClass, [u32; 2]);
@@ -151,22 +151,4 @@ fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> (Point, f64) {
     let measured = candidates.map(|(class, points)| closest_points(class, &points));
     let best = measured.iter().fold(&measured[0], |best, next| if next.1 < best.1 { next } else { best });
     (best.0[0], 0.0)
-}
-
-/// Counts pairs of primitives by their bodies. Of each the deepest place is kept, of equal ones the first.
-pub(super) fn by_bodies(
-    pairs: impl Iterator<Item = ([Option<u32>; 2], Option<f64>, Point)>,
-) -> Vec<BodyPair> {
-    // Half-spaces have no number and come last.
-    let key = |body: Option<u32>| (body.is_none(), body);
-    let mut counted = BTreeMap::new();
-    for (mut bodies, depth, place) in pairs {
-        bodies.sort_by_key(|body| key(*body));
-        let pair = counted.entry(bodies.map(key)).or_insert(BodyPair { bodies, count: 0, depth, place });
-        pair.count += 1;
-        if depth > pair.depth {
-            (pair.depth, pair.place) = (depth, place);
-        }
-    }
-    counted.into_values().collect()
 }

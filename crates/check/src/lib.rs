@@ -24,6 +24,7 @@
 // Results have the same bits on every machine; tests may use the system's functions.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod body_pairs;
 mod closest;
 mod dump;
 mod error;

@@ -3,8 +3,8 @@
 //! Trees over the boxes at both ends list the pairs whose moving boxes may meet; [`Sweep`] then
 //! certifies each, or calls it a hit.
 
+use crate::body_pairs::by_bodies;
 use crate::error::CheckError;
-use crate::intersections::by_bodies;
 use crate::judge::Judge;
 use crate::primitives::{Scene, closest_points, gather, pair_kind};
 use crate::report::{PairClass, PathHit, PathOptions, PathReport};

@@ -53,3 +53,8 @@ fn take_digits<'a>(bytes: &mut &'a [u8]) -> &'a [u8] {
     let zeros = digits.iter().take_while(|&&b| b == b'0').count();
     &digits[zeros..]
 }
+
+/// The ending of a file's name in lower case.
+pub(crate) fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}

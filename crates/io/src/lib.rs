@@ -8,6 +8,7 @@
 //! The readers are our own because the crates at hand do not say where a file is wrong (`tobj`) or refuse
 //! numbers that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests.
 
+mod animation;
 mod atomic;
 mod elements;
 mod error;
@@ -24,9 +25,11 @@ mod msh;
 pub mod npz;
 mod numbering;
 mod obj;
+mod parts;
 mod pc2;
 mod ply;
 mod read;
+mod still;
 mod stl;
 mod surface;
 mod tet_list;
@@ -38,11 +41,12 @@ mod vtu;
 /// Points and topology, the types that meshes are made of.
 pub use bowknot_geometry as geometry;
 
+pub use animation::FrameOptions;
 pub use atomic::{create_folder, write_atomic, write_text};
 pub use error::{IoError, Place};
 pub use field::{Field, FieldValues};
 pub use folder::files_in;
-pub use frame_source::{FrameOptions, FrameSource};
+pub use frame_source::FrameSource;
 pub use gltf::{GltfBody, write_glb};
 pub use groups::Groups;
 pub use import::{Import, Up};

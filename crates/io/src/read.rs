@@ -1,13 +1,13 @@
 //! Meshes of any format, told apart by the ending of the file's name.
 
 use crate::error::{IoError, Place};
-use crate::frame_source::read_still;
 use crate::import::Import;
 use crate::medit::{read_medit, refuse_binary};
 use crate::mesh::Mesh;
 use crate::msh::read_msh;
 use crate::obj::{read_obj, read_segments};
 use crate::ply::read_ply;
+use crate::still::read_still;
 use crate::stl::read_stl;
 use crate::tet_list::read_tet_list;
 use crate::tetgen::read_tetgen;

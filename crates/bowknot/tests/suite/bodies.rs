@@ -218,7 +218,7 @@ fn pushed_by(folder: &Path, sequence: &str) -> Simulator {
 }
 
 #[test]
-fn a_sequence_pushes_cloth_from_a_folder_as_from_an_archive() {
+fn a_sequence_pushes_cloth_from_a_folder_as_from_an_archive_or_a_stage() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::create_dir(folder.path().join("frames")).expect("a folder");
     let view = MeshView { triangles: &BOX, ..MeshView::default() };
@@ -245,11 +245,31 @@ fn a_sequence_pushes_cloth_from_a_folder_as_from_an_archive() {
     let sheet = &simulator.positions()[of_body(&simulator, 0)];
     assert!(sheet.iter().map(|p| p.x).fold(f64::MIN, f64::max) > 0.03, "the cloth was not pushed");
 
-    let mut other = pushed_by(folder.path(), "frames.npz");
-    run(&mut other, 60);
-    for (a, b) in simulator.positions().iter().zip(other.positions()) {
-        assert!((a - b).norm() < 1e-9);
+    std::fs::write(folder.path().join("frames.usda"), stage()).expect("a stage");
+    for (sequence, tolerance) in [("frames.npz", 1e-9), ("frames.usda", 1e-6)] {
+        let mut other = pushed_by(folder.path(), sequence);
+        run(&mut other, 60);
+        for (a, b) in simulator.positions().iter().zip(other.positions()) {
+            assert!((a - b).norm() < tolerance, "{sequence}: {a} {b}");
+        }
     }
+}
+
+/// The box as a stage with 40 time codes per second, of which every second has a sample.
+fn stage() -> String {
+    let points = |frame: usize| {
+        let points =
+            box_frame(frame).iter().map(|p| format!("({:?}, {:?}, {:?})", p.x, p.y, p.z)).collect::<Vec<_>>();
+        format!("            {}: [{}],\n", 2 * frame, points.join(", "))
+    };
+    let counts = vec!["3"; BOX.len()].join(", ");
+    let corners = BOX.as_flattened().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    format!(
+        "#usda 1.0\n(\n    upAxis = \"Z\"\n    metersPerUnit = 1\n    timeCodesPerSecond = 40\n)\ndef Mesh \"ram\"\n{{\n\
+         \x20   uniform token subdivisionScheme = \"none\"\n    int[] faceVertexCounts = [{counts}]\n    \
+         int[] faceVertexIndices = [{corners}]\n    point3f[] points.timeSamples = {{\n{}    }}\n}}\n",
+        (0..12).map(points).collect::<String>()
+    )
 }
 
 /// All kinds of bodies in a heap, small.

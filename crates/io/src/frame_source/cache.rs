@@ -1,9 +1,10 @@
 //! Point caches with the meshes that they move.
 
-use super::{Animation, PartsBuilder};
+use crate::animation::Animation;
 use crate::error::{IoError, Place};
 use crate::import::Import;
 use crate::mesh::Mesh;
+use crate::parts::PartsBuilder;
 use crate::pc2::PointCache;
 use crate::read::read_mesh;
 use bowknot_errors::counted;

@@ -2,10 +2,11 @@
 //!
 //! Source: VTK's page "VTK XML file formats", and the page "ParaView/Data formats" on `.pvd`.
 
-use super::{Animation, PartsBuilder};
+use crate::animation::Animation;
 use crate::error::{IoError, Place};
 use crate::import::{Import, without_mark};
 use crate::mesh::Mesh;
+use crate::parts::PartsBuilder;
 use crate::read::read_mesh;
 use std::path::{Path, PathBuf};
 

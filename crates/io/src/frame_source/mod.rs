@@ -3,9 +3,9 @@
 mod cache;
 mod collection;
 mod open;
-mod parts;
 mod together;
 
+use crate::animation::Animation;
 use crate::error::IoError;
 use crate::folder::files_in;
 use crate::import::Import;
@@ -16,10 +16,6 @@ use crate::read::{MESH_ENDINGS, read_mesh};
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-pub use open::FrameOptions;
-pub(crate) use open::{frame_times, read_still};
-pub(crate) use parts::PartsBuilder;
 
 /// Endings of frames that are files of their own, the preferred one first; `vtu` if it is read.
 const ENDINGS: [&str; 3] = ["ply", "obj", "vtu"];
@@ -40,24 +36,6 @@ enum Store {
     Archive(PathBuf, Box<FrameStack>),
     /// A file that tells the frames of a mesh.
     Animation(Arc<dyn Animation>),
-}
-
-/// A file, or several that belong together, with the motion of meshes. Lengths and axes are the file's.
-pub(crate) trait Animation: Debug + Send + Sync {
-    /// Number of frames.
-    fn len(&self) -> usize;
-
-    /// Time of each frame [s], if the file knows it.
-    fn times(&self) -> Option<&[f64]>;
-
-    /// Names of the parts, by their numbers in [`Mesh::body`].
-    fn names(&self) -> &[String];
-
-    /// File that holds a frame.
-    fn path(&self, index: usize) -> &Path;
-
-    /// A frame, which exists. All have the same elements, unless they come from files of their own.
-    fn read(&self, index: usize) -> Result<Mesh, IoError>;
 }
 
 impl FrameSource {

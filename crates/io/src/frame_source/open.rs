@@ -3,27 +3,15 @@
 use super::cache::PointCaches;
 use super::collection::Collection;
 use super::{FrameSource, Store};
+use crate::animation::FrameOptions;
 use crate::error::{IoError, Place};
+use crate::folder::ending;
 use crate::gltf::GltfScene;
 use crate::import::Import;
-use crate::mesh::Mesh;
 use crate::read::MESH_ENDINGS;
 use crate::usd::Stage;
 use bowknot_errors::Parameters;
 use std::path::Path;
-
-/// How frames are read.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FrameOptions {
-    /// From the axes and the unit of the files to ours. By default they stay as they are.
-    pub import: Import,
-    /// Frames per second of a file that knows motion but no frames [1/s], a USD stage or a glTF scene; none:
-    /// frames at the times of its samples or keys, each once.
-    pub rate: Option<f64>,
-    /// Whether vertices of a glTF mesh stay apart that are the same in position, all morph targets and skin.
-    /// Exporters part them where texture coordinates or normals differ; by default they are joined.
-    pub keep_seams: bool,
-}
 
 impl FrameSource {
     /// The frames of any file or folder, as it says them; see [`Self::open_with`].
@@ -61,21 +49,6 @@ impl FrameSource {
     }
 }
 
-/// The mesh of a stage or scene where nothing moves.
-///
-/// # Errors
-/// As [`FrameSource::open_with`].
-pub(crate) fn read_still(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
-    let options = FrameOptions { import: *import, ..FrameOptions::default() };
-    let mut mesh = match ending(path).as_str() {
-        "gltf" | "glb" => GltfScene::open(path, &options)?.into_mesh(),
-        _ => Stage::open(path, &options)?.into_mesh(),
-    };
-    import.convert(&mut mesh, path)?;
-    Ok(mesh)
-}
-
 fn of_file(path: &Path, options: &FrameOptions) -> Result<FrameSource, IoError> {
     match ending(path).as_str() {
         "npz" => of_archive(path),
@@ -85,11 +58,6 @@ fn of_file(path: &Path, options: &FrameOptions) -> Result<FrameSource, IoError> 
         "pvd" => Collection::open(path).map(FrameSource::of_animation),
         _ => Ok(FrameSource { store: Store::Files(vec![path.to_owned()]), import: Import::default() }),
     }
-}
-
-/// The ending of a file's name in lower case.
-fn ending(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
 fn of_folder(folder: &Path) -> Result<FrameSource, IoError> {
@@ -132,13 +100,4 @@ fn of_archive(path: &Path) -> Result<FrameSource, IoError> {
 fn of_archive(path: &Path) -> Result<FrameSource, IoError> {
     let message = "archives are not read: this build has no feature npz";
     Err(IoError::content(path, Place::File, message))
-}
-
-/// Times of frames of an animation with these key times, ascending: the keys, or so many per second from the
-/// first to the last.
-pub(crate) fn frame_times(keys: &[f64], rate: Option<f64>) -> Vec<f64> {
-    let (Some(rate), [first, .., last]) = (rate, keys) else { return keys.to_vec() };
-    // Rounding must not lose the last frame.
-    let count = ((last - first) * rate * (1.0 + 1e-9)).floor();
-    (0..).map(f64::from).take_while(|k: &f64| *k <= count).map(|k| first + k / rate).collect()
 }

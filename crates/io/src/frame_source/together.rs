@@ -1,8 +1,10 @@
 //! Several sources as one: the parts of a scene that lie in files of their own.
 
-use super::{Animation, FrameSource, PartsBuilder};
+use super::FrameSource;
+use crate::animation::Animation;
 use crate::error::{IoError, Place};
 use crate::mesh::Mesh;
+use crate::parts::PartsBuilder;
 use bowknot_errors::counted;
 use std::path::Path;
 

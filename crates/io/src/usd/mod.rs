@@ -220,7 +220,7 @@ impl<'a> Prim<'a> {
                 write_list(out, "float[] widths", vec![body.width as f32; self.vertices.len()])?
             }
         }
-        writeln!(out, "        custom bool {} = {}", read::OBSTACLE, u8::from(body.obstacle))?;
+        writeln!(out, "        custom bool {} = {}", names::OBSTACLE, u8::from(body.obstacle))?;
         let color = if body.obstacle { "(0.6, 0.6, 0.62)" } else { "(0.75, 0.35, 0.25)" };
         writeln!(out, "        color3f[] primvars:displayColor = [{color}]")
     }

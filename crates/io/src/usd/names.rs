@@ -2,6 +2,9 @@
 
 use std::collections::HashSet;
 
+/// The attribute by which our stages say that a body is an obstacle.
+pub(super) const OBSTACLE: &str = "bowknot:obstacle";
+
 /// Names of bodies that USD allows, all different.
 pub(super) fn identifiers<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     // `cloth_strands` may be the name of another body, or that of the strands of `cloth`.

@@ -8,8 +8,11 @@ use bowknot_errors::counted;
 use bowknot_geometry::Point;
 #[cfg(feature = "npz")]
 use bowknot_io::FrameStack;
-use bowknot_io::{self as io, IoError, MESH_ENDINGS, Mesh, Place, files_in};
+use bowknot_io::{self as io, FrameOptions, FrameSource, IoError, MESH_ENDINGS, Mesh, Place, files_in};
 use std::path::{Path, PathBuf};
+
+/// Endings of files with the motion of meshes.
+const ANIMATIONS: [&str; 6] = ["usda", "usd", "gltf", "glb", "pc2", "pvd"];
 
 const ALL_EMPTY: &str = "all of its frames are empty, so there is nothing to show: a frame must have \
                          vertices at different places";
@@ -32,13 +35,18 @@ pub(super) fn load(
     warnings: &mut Vec<String>,
 ) -> Result<(Part, Sequence, Presence), SceneError> {
     let path = folder.join(path);
-    let is_mesh = path.extension().is_some_and(|ending| MESH_ENDINGS.iter().any(|known| ending == *known));
-    if is_mesh {
-        let message =
-            "a sequence is a folder of meshes or an archive of frames (.npz), not one mesh; use `mesh`";
+    let is = |endings: &[&str]| path.extension().is_some_and(|e| endings.iter().any(|known| e == *known));
+    let frames = if path.is_dir() {
+        of_folder(&path, placing)?
+    } else if is(&ANIMATIONS) {
+        of_animation(&path, placing, spec.sequence_rate)?
+    } else if is(&MESH_ENDINGS) {
+        let message = "a sequence is a folder of meshes, an animation (USD, glTF, PC2, PVD) or an archive of frames \
+                       (.npz), not one mesh; use `mesh`";
         return Err(IoError::content(&path, Place::File, message).into());
-    }
-    let frames = if path.is_dir() { of_folder(&path, placing)? } else { of_archive(&path, placing)? };
+    } else {
+        of_archive(&path, placing)?
+    };
     let owner = format!("obstacle {}", spec.name);
     let mut part = Part::from_mesh(frames.mesh).into_obstacle(&owner, warnings)?;
     let (rate, start) = (spec.sequence_rate, spec.sequence_start);
@@ -56,6 +64,28 @@ pub(super) fn load(
     part.positions.clone_from(&positions[0]);
     let presence = Presence::of_frames(&shown, time);
     Ok((part, Sequence { frames: positions.into(), rate, start: time(first) }, presence))
+}
+
+/// The frames of an animation, as many per second as the sequence has, if the file knows its times.
+fn of_animation(path: &Path, placing: &Placing, rate: f64) -> Result<Frames, IoError> {
+    let options = FrameOptions { import: placing.import, rate: Some(rate), ..FrameOptions::default() };
+    let source = FrameSource::open_with(path, &options)?;
+    let mut known: Option<Mesh> = None;
+    let mut frames = Vec::with_capacity(source.len());
+    for index in 0..source.len() {
+        let mut mesh = source.read(index)?;
+        let positions = std::mem::take(&mut mesh.positions);
+        if let Some(difference) = known.as_ref().and_then(|known| difference(known, &mesh, positions.len())) {
+            let message = format!("{difference} than in the first frame; a sequence keeps its topology");
+            return Err(IoError::content(source.path(index), Place::File, message));
+        }
+        if known.is_none() && !is_empty(&positions) {
+            known = Some(Mesh { positions: positions.clone(), ..mesh });
+        }
+        frames.push(Some(positions).filter(|positions| !is_empty(positions)));
+    }
+    let mesh = known.ok_or_else(|| IoError::content(path, Place::File, ALL_EMPTY))?;
+    Ok(Frames { mesh, positions: frames })
 }
 
 /// The meshes of a folder in natural order of their names.

@@ -1,9 +1,7 @@
 //! What a file says, before prims become parts of a mesh.
 
-use super::text::TextArrays;
-use crate::error::{IoError, Place};
+use crate::usd::names::OBSTACLE;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// A layer: prims and what holds for all of them.
 #[derive(Debug, Default)]
@@ -57,35 +55,6 @@ pub(super) struct ArrayPlace {
     pub single: bool,
 }
 
-/// What reads arrays.
-#[derive(Debug)]
-pub(super) enum Arrays {
-    Text(TextArrays),
-}
-
-impl Arrays {
-    /// The numbers of an array, one after the other.
-    ///
-    /// # Errors
-    /// The system's refusal, words that are no numbers, numbers that are not finite.
-    pub fn read(&self, place: &ArrayPlace) -> Result<Vec<f64>, IoError> {
-        match self {
-            Self::Text(arrays) => arrays.read(place),
-        }
-    }
-
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::Text(arrays) => &arrays.path,
-        }
-    }
-
-    /// An error at a prim.
-    pub fn fault(&self, prim: &str, message: impl Into<String>) -> IoError {
-        IoError::content(self.path(), Place::Prim(prim.to_owned()), message)
-    }
-}
-
 /// Attributes that meshes come from; others are not kept.
 pub(super) fn counts(name: &str) -> bool {
     const NAMES: [&str; 13] = [
@@ -103,11 +72,11 @@ pub(super) fn counts(name: &str) -> bool {
         OBSTACLE,
         "tetVertexIndices",
     ];
-    NAMES.contains(&name) || name.starts_with("xformOp:")
+    NAMES.contains(&name) || name.starts_with("xformOp:") || name.starts_with(SKIN)
 }
 
-/// The attribute by which our stages say that a body is an obstacle.
-pub(in crate::usd) const OBSTACLE: &str = "bowknot:obstacle";
+/// How attributes begin that bind a prim to a skeleton.
+pub(super) const SKIN: &str = "primvars:skel:";
 
 /// Metadata of a layer that count.
 pub(super) const METADATA: [&str; 4] = ["upAxis", "metersPerUnit", "timeCodesPerSecond", "framesPerSecond"];

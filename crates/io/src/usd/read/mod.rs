@@ -10,5 +10,4 @@ mod stage;
 mod text;
 mod xform;
 
-pub(in crate::usd) use layer::OBSTACLE;
 pub(crate) use stage::Stage;

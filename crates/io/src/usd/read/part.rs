@@ -1,9 +1,11 @@
 //! From a prim to the elements of a part.
 
-use super::layer::{Arrays, Attribute, Prim, Value};
+use super::layer::{Attribute, Prim, Value};
+use super::text::Arrays;
 use crate::error::IoError;
 use crate::mesh::Mesh;
 use crate::surface::{Corner, Labels, Surface};
+use crate::usd::names::OBSTACLE;
 use bowknot_errors::counted;
 
 /// Kinds of prims that are parts of a mesh.
@@ -61,7 +63,7 @@ pub(super) fn elements(
         "BasisCurves" => reader.curves(&mut mesh)?,
         _ => mesh.particles = (0..points as u32).collect(),
     }
-    if let Some(Value::Numbers(flag)) = prim.attributes.get(super::OBSTACLE).and_then(Attribute::first) {
+    if let Some(Value::Numbers(flag)) = prim.attributes.get(OBSTACLE).and_then(Attribute::first) {
         mesh.obstacle = Some(vec![flag.first() == Some(&1.0); points]);
     }
     Ok(mesh)

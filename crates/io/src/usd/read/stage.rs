@@ -1,13 +1,14 @@
 //! A stage as an animation.
 
-use super::layer::{Arrays, Attribute, Layer, Prim, Value};
+use super::layer::{Attribute, Layer, Prim, SKIN, Value};
 use super::part::{elements, is_other_shape, is_part};
-use super::text::{TextArrays, read_layer};
+use super::text::{Arrays, read_layer};
 use super::xform::Placement;
+use crate::animation::{Animation, FrameOptions, frame_times};
 use crate::error::{IoError, Place};
-use crate::frame_source::{Animation, FrameOptions, PartsBuilder, frame_times};
 use crate::import::{Import, Up};
 use crate::mesh::Mesh;
+use crate::parts::PartsBuilder;
 use crate::transform::place;
 use bowknot_errors::counted;
 use bowknot_geometry::Point;
@@ -45,7 +46,7 @@ impl Stage {
     /// curves or points.
     pub fn open(path: &Path, options: &FrameOptions) -> Result<Self, IoError> {
         let layer = read_layer(path)?;
-        let arrays = Arrays::Text(TextArrays { path: path.to_owned() });
+        let arrays = Arrays { path: path.to_owned() };
         Self::new(layer, arrays, options)
     }
 
@@ -57,11 +58,11 @@ impl Stage {
             walk.prim(prim, "", &[])?;
         }
         let Walk { found, placements, left_out, .. } = walk;
-        left_out.warn(arrays.path(), &layer);
-        warn_of_axes(arrays.path(), &layer, &options.import);
+        left_out.warn(&arrays.path, &layer);
+        warn_of_axes(&arrays.path, &layer, &options.import);
         if found.is_empty() {
             let message = "no meshes, curves or points in it";
-            return Err(IoError::content(arrays.path(), Place::File, message));
+            return Err(IoError::content(&arrays.path, Place::File, message));
         }
         let names = names(&found);
         let (parts, prims): (Vec<Part>, Vec<Prim>) = found.into_iter().unzip();
@@ -182,7 +183,7 @@ impl Animation for Stage {
     }
 
     fn path(&self, _index: usize) -> &Path {
-        self.arrays.path()
+        &self.arrays.path
     }
 
     fn read(&self, index: usize) -> Result<Mesh, IoError> {
@@ -270,6 +271,13 @@ impl Walk<'_> {
         }
         if prim.kind == "Mesh" && prim.text("subdivisionScheme") != Some("none") {
             self.left_out.add("subdivision surfaces, of which the control cages are taken", &path);
+        }
+        if prim.attributes.keys().any(|name| name.starts_with(SKIN)) {
+            self.left_out.add(
+                "skinned by a skeleton, of which the points at rest are taken (`UsdSkel.BakeSkinning` writes how \
+                 they move)",
+                &path,
+            );
         }
         if prim.kind == "BasisCurves" && prim.text("type") != Some("linear") {
             self.left_out.add("cubic curves, taken as lines through their control points", &path);

@@ -329,13 +329,22 @@ fn number_of(word: &str, single: bool) -> Option<f64> {
     if single { word.parse::<f32>().ok().map(f64::from) } else { number(word) }
 }
 
-/// Reads arrays of a text.
+/// Reads the arrays of a file.
 #[derive(Debug)]
-pub(super) struct TextArrays {
+pub(super) struct Arrays {
     pub path: PathBuf,
 }
 
-impl TextArrays {
+impl Arrays {
+    /// An error at a prim.
+    pub fn fault(&self, prim: &str, message: impl Into<String>) -> IoError {
+        IoError::content(&self.path, Place::Prim(prim.to_owned()), message)
+    }
+
+    /// The numbers of an array, one after the other.
+    ///
+    /// # Errors
+    /// The system's refusal, words that are no numbers, numbers that are not finite.
     pub fn read(&self, place: &ArrayPlace) -> Result<Vec<f64>, IoError> {
         let system = |source| IoError::system("read", &self.path, source);
         let mut file = File::open(&self.path).map_err(system)?;

@@ -1,0 +1,30 @@
+//! Files with the motion of meshes, read where nothing moves.
+
+use crate::animation::FrameOptions;
+use crate::error::{IoError, Place};
+use crate::folder::ending;
+use crate::gltf::GltfScene;
+use crate::import::Import;
+use crate::mesh::Mesh;
+use crate::usd::Stage;
+use bowknot_errors::Parameters;
+use std::path::Path;
+
+/// The mesh of a stage or scene where nothing moves.
+///
+/// # Errors
+/// As [`FrameSource::open_with`].
+pub(crate) fn read_still(path: &Path, import: &Import) -> Result<Mesh, IoError> {
+    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
+    let options = FrameOptions { import: *import, ..FrameOptions::default() };
+    let mut mesh = match ending(path).as_str() {
+        "gltf" | "glb" => GltfScene::open(path, &options)?.into_mesh(),
+        _ => Stage::open(path, &options)?.into_mesh(),
+    };
+    import.convert(&mut mesh, path)?;
+    if let [first, second, ..] = mesh.names.as_slice() {
+        let count = mesh.names.len();
+        tracing::warn!("{}: its {count} parts are read as one mesh: {first}, {second}, ..", path.display());
+    }
+    Ok(mesh)
+}
