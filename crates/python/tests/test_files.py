@@ -103,3 +103,44 @@ def test_binary_usd(tmp_path: Path) -> None:
     (tmp_path / "bad.usdc").write_bytes(b"PXR-USDC nothing")
     with pytest.raises(bowknot.InputError, match="bad.usdc: usd-core refuses it"):
         bowknot.check_files(tmp_path / "bad.usdc")
+
+
+def test_skins_and_instances_of_binary_usd(tmp_path: Path) -> None:
+    pytest.importorskip("pxr")
+    from pxr import Gf, Usd, UsdGeom, UsdSkel, Vt
+
+    stage = Usd.Stage.CreateNew(str(tmp_path / "arm.usdc"))
+    stage.SetStartTimeCode(0)
+    stage.SetEndTimeCode(2)
+    UsdSkel.Root.Define(stage, "/root")
+    skeleton = UsdSkel.Skeleton.Define(stage, "/root/skeleton")
+    skeleton.CreateJointsAttr(["bone"])
+    identity = Vt.Matrix4dArray([Gf.Matrix4d(1.0)])
+    skeleton.CreateBindTransformsAttr(identity)
+    skeleton.CreateRestTransformsAttr(identity)
+    animation = UsdSkel.Animation.Define(stage, "/root/animation")
+    animation.CreateJointsAttr(["bone"])
+    animation.CreateRotationsAttr([Gf.Quatf(1.0)])
+    animation.CreateScalesAttr(Vt.Vec3hArray([Gf.Vec3h(1, 1, 1)]))
+    for frame, z in enumerate([0.0, -1.0, -2.25]):
+        animation.CreateTranslationsAttr().Set([(0, 0, z)], frame)
+    UsdSkel.BindingAPI.Apply(skeleton.GetPrim()).CreateAnimationSourceRel().SetTargets([animation.GetPath()])
+    arm = UsdGeom.Mesh.Define(stage, "/root/arm")
+    arm.CreateFaceVertexCountsAttr([3])
+    arm.CreateFaceVertexIndicesAttr([0, 1, 2])
+    arm.CreatePointsAttr([(0.2, 0.2, 2.0), (0.3, 0.2, 4.0), (5, 5, 3.0)])
+    binding = UsdSkel.BindingAPI.Apply(arm.GetPrim())
+    binding.CreateJointIndicesPrimvar(False, 1).Set([0, 0, 0])
+    binding.CreateJointWeightsPrimvar(False, 1).Set([1.0, 1.0, 1.0])
+    binding.CreateSkeletonRel().SetTargets([skeleton.GetPath()])
+    stage.CreateClassPrim("/prototype")
+    still = UsdGeom.Mesh.Define(stage, "/prototype/still")
+    still.CreateFaceVertexCountsAttr([3])
+    still.CreateFaceVertexIndicesAttr([0, 1, 2])
+    still.CreatePointsAttr([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    copy = stage.DefinePrim("/copy", "Xform")
+    copy.GetReferences().AddInternalReference("/prototype")
+    copy.SetInstanceable(True)
+    stage.Save()
+    report = bowknot.check_files(tmp_path / "arm.usdc")
+    assert [frame["intersections"] > 0 for frame in report.files] == [False, False, True], report.files

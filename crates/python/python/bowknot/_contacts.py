@@ -33,7 +33,7 @@ class Contacts:
     gaps : ndarray of float64, shape (k,)
         Distances of the closest points along the normals [m].
     forces : ndarray of float64, shape (k, 3)
-        Forces on the first side [N]; those on the second are opposite.
+        Forces on the first side [N]; those on the second are opposite. A pair of bodies may appear in both orders.
     """
 
     bodies: NDArray[np.uint32]

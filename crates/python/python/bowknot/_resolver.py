@@ -306,9 +306,11 @@ class Resolver:
     def contacts(self, dt: float) -> Contacts:
         """The contacts that press at the end of the last call, which stood for a time step ``dt`` [s].
 
-        Their forces are what, beside those of your dynamics, leads to where the call ended. A call that has not
-        converged, or that ``start=`` splits into several, tells less than that. Stretch limits pull as well, which is
-        not among them. There are none under ``friction_model="filter"``.
+        Their forces are what, beside those of your dynamics, leads to where the call ended. They follow from ``masses``,
+        which are 1 kg per vertex if they were not given. Stretch limits pull as well, which is not among them. A call
+        that has not converged, or that ``start=`` splits into several, tells less than that. Where obstacles press a body
+        to less than its contact distance ``delta``, not all contacts can be met: forces then grow without meaning
+        (``info.complementarity_m`` far above 1e-6); take a smaller ``delta``. The velocity filter has no friction here.
 
         Raises
         ------

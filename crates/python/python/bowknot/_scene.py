@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike
 from . import _native, _toml
 from ._call import call
 from ._errors import InputError
-from ._meshes import Mesh, is_path, mesh_of
+from ._meshes import Mesh, is_path, mesh_of, read_mesh
+from ._usd import needs_usd
 
 #: Keys of a body or an obstacle that hold arrays.
 _ARRAYS = ("faces", "tets", "edges", "particles")
@@ -310,6 +311,9 @@ def _split(what: str, entry: _Table) -> tuple[dict[str, Any], Mesh | None]:
     plain = dict(entry)
     arrays = {key: plain.pop(key) for key in _ARRAYS if key in plain}
     mesh = plain.get("mesh")
+    if is_path(mesh) and needs_usd(mesh):
+        import_keys = {key: plain.pop(key) for key in ("up", "scale") if key in plain}
+        plain["mesh"] = mesh = read_mesh(mesh, **import_keys)
     if mesh is None or is_path(mesh):
         if arrays:
             raise InputError(f"{what}: {', '.join(arrays)} without vertices; give them as mesh")

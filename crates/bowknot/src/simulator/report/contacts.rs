@@ -42,7 +42,7 @@ impl Contact {
     /// masses of its scene count them. The call stands for a time step of `time_step` [s] from its start to its
     /// target: the forces are those that, beside those of the dynamics, lead to where the call ended. They are
     /// as accurate as the call, see [`Statistics::converged`](bowknot_twoway::Statistics::converged); forces of
-    /// stretch limits are not among them. There are none under the velocity filter.
+    /// stretch limits are not among them, nor is friction under the velocity filter.
     pub fn of_call(resolver: &Resolver, time_step: f64) -> Vec<Self> {
         let (scene, state) = (resolver.scene(), resolver.state());
         let scale = scene.mean_mass() / (time_step * time_step);
