@@ -123,29 +123,33 @@ impl Layout {
 
     /// The bodies that have vertices, by their numbers. An element belongs to the body of its first vertex.
     pub fn parts(&self) -> Vec<Part> {
-        let bodies = self.body.iter().max().map_or(0, |most| *most as usize + 1);
-        let mut parts = vec![Part::default(); bodies];
+        // Any numbers may stand in a file.
+        let mut numbers = self.body.clone();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let place = |number: &u32| numbers.partition_point(|other| other < number) as u32;
+        let bodies: Vec<u32> = self.body.iter().map(place).collect();
+        let mut parts = vec![Part::default(); numbers.len()];
         let mut local = Vec::with_capacity(self.body.len());
-        for (vertex, body) in self.body.iter().enumerate() {
+        for (vertex, body) in bodies.iter().enumerate() {
             let part = &mut parts[*body as usize];
             local.push(part.vertices.len() as u32);
             part.vertices.push(vertex as u32);
             part.obstacle = self.obstacle[vertex];
         }
         if let Some(surface) = &self.surface {
-            let surfaces = surface.split(&self.body, &local, bodies);
+            let surfaces = surface.split(&bodies, &local, numbers.len());
             parts.iter_mut().zip(surfaces).for_each(|(part, surface)| part.surface = surface);
         }
-        let owner = |element: &[u32]| self.body[element[0] as usize];
+        let owner = |element: &[u32]| bodies[element[0] as usize];
         let local = |v: u32| local[v as usize];
         self.triangles.iter().for_each(|t| parts[owner(t) as usize].triangles.push(t.map(local)));
         self.quads.iter().for_each(|q| parts[owner(q) as usize].quads.push(q.map(local)));
         self.strands.iter().for_each(|e| parts[owner(e) as usize].strands.push(e.map(local)));
         self.particles.iter().for_each(|&p| parts[owner(&[p]) as usize].particles.push(local(p)));
-        for (index, part) in parts.iter_mut().enumerate() {
-            part.name = self.names.get(index).cloned().unwrap_or_else(|| format!("body_{index}"));
+        for (number, part) in numbers.iter().zip(&mut parts) {
+            part.name = self.names.get(*number as usize).cloned().unwrap_or_else(|| format!("body_{number}"));
         }
-        parts.retain(|part| !part.vertices.is_empty());
         parts
     }
 }
