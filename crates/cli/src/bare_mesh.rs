@@ -4,7 +4,7 @@
 use crate::args::Up;
 use crate::exit::Failure;
 use bowknot::geometry::{Point, Vector};
-use bowknot::io::{Import, MESH_ENDINGS, Mesh, read_mesh};
+use bowknot::io::{Import, IoError, MESH_ENDINGS, Mesh, read_mesh, read_mesh_part};
 use bowknot::scene::{BodyKind, BodySpec, Material, ObstacleSpec, Scene};
 use bowknot::shapes::{Ball, HalfSpaceShape, Shape};
 use std::path::Path;
@@ -48,7 +48,7 @@ pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     scene.simulation.frames = 150;
     let imported = scene.clone().with_sets(sets).map_err(Failure::input)?;
     let body = &imported.bodies[0];
-    let mesh = read_mesh(path, &Import { up: body.up, scale: body.scale })?;
+    let mesh = read(path, body)?;
     let body = &mut scene.bodies[0];
     body.kind = kind(&mesh);
     body.material = Material::of(body.kind);
@@ -75,6 +75,15 @@ pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     };
     scene.obstacles = vec![ball, ground];
     scene.with_sets(sets).map_err(Failure::input)
+}
+
+/// The mesh of a body, or the part that it names.
+pub fn read(path: &Path, body: &BodySpec) -> Result<Mesh, IoError> {
+    let import = Import { up: body.up, scale: body.scale };
+    match &body.part {
+        Some(part) => read_mesh_part(path, &import, part),
+        None => read_mesh(path, &import),
+    }
 }
 
 /// The kind of body that the elements of a mesh suggest.

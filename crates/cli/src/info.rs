@@ -4,7 +4,7 @@ use crate::args::InfoOptions;
 use crate::exit::{Exit, Failure};
 use crate::{archive, bare_mesh, gpu, near_starts, output};
 use bowknot::geometry::{MeshEdge, MeshProblem, MeshStructure, Point, check_mesh};
-use bowknot::io::{Import, Mesh, read_mesh};
+use bowknot::io::Mesh;
 use bowknot::simulator::NearStart;
 use bowknot::{Scene, SceneInfo, SimulationError, Simulator, World};
 use bowknot_errors::counted;
@@ -107,7 +107,7 @@ fn of_counts(info: SceneInfo, near_starts: Vec<NearStart>) -> Info {
 fn info_of_file(name: &str, import: &[String]) -> Result<Info, Failure> {
     let scene = bare_mesh::scene(name, import)?;
     let body = &scene.bodies[0];
-    let mut mesh = read_mesh(Path::new(name), &Import { up: body.up, scale: body.scale })?;
+    let mut mesh = bare_mesh::read(Path::new(name), body)?;
     let faults = mesh.triangulate().describe();
     let mut problems = problems(&mesh);
     // What only the assembly finds, such as inverted tetrahedra. A frame with obstacles is no body.

@@ -9,7 +9,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Bar;
 use crate::{bare_mesh, failure_dump, gpu, near_starts, output, setup};
 use bowknot::check::{Judge, StateReport};
-use bowknot::run::{FailureWatch, HeldApartStep, Outcome, Progress, Summary};
+use bowknot::run::{FailureWatch, Outcome, Progress, Summary, residual_text};
 use bowknot::scene::SimulationParams;
 use bowknot::{Scene, SimulationError, Simulator, World};
 use bowknot_errors::counted;
@@ -263,7 +263,7 @@ fn to_text(outcome: &Outcome, out: &Path, simulation: &SimulationParams) -> Stri
         number(max.and_then(|max| max.max_stretch), 3),
     ));
     lines.extend(unreached_targets(summary));
-    lines.extend(held_apart(summary));
+    lines.extend(summary.held_apart_advice().map(|advice| format!("warning: {advice}")));
     lines.extend(unsolved_steps(summary, simulation));
     if let Some(slowest) = &summary.slowest_step {
         let steps = counted(slowest.two_way_steps, "two-way step", "two-way steps");
@@ -286,65 +286,18 @@ fn to_text(outcome: &Outcome, out: &Path, simulation: &SimulationParams) -> Stri
     lines.join("\n")
 }
 
-/// A residual [m] in words, with its ratio to the tolerance [m], if there is one.
-fn residual_text(residual: f64, tolerance: f64) -> String {
-    let mut text = format!("{} mm", two_digits(1e3 * residual));
-    if tolerance > 0.0 {
-        text += &format!(", {} times the tolerance", two_digits(residual / tolerance));
-    }
-    text
-}
-
-/// A number with two digits, or as an integer.
-fn two_digits(value: f64) -> String {
-    if value >= 10.0 {
-        return format!("{value:.0}");
-    }
-    let digits = (1.0 - value.log10().floor()).clamp(0.0, 9.0) as usize;
-    if value > 0.0 && value < 1e-4 { format!("{value:.1e}") } else { format!("{value:.digits$}") }
-}
-
-/// Pins that held edges over their stretch limits.
-fn held_apart(summary: &Summary) -> Option<String> {
-    let HeldApartStep { step, at } = summary.most_held_apart.as_ref()?;
-    let steps = counted(summary.frames, "time step", "time steps");
-    Some(format!(
-        "warning: in {} of {steps} pins stretch edges beyond their limits, most in time step {step}: {at}; \
-         what helps: a larger stretch_limit of {}, or pins nearer together",
-        summary.held_apart_steps, at.body
-    ))
-}
-
 /// Time steps that ended unsolved, where the first of them is out of balance, and what helps.
 fn unsolved_steps(summary: &Summary, simulation: &SimulationParams) -> Vec<String> {
-    let Some(first) = &summary.first_unsolved else { return Vec::new() };
-    let steps = counted(summary.frames, "time step", "time steps");
-    let at = first.at.as_ref().map_or_else(String::new, |at| format!(", at {} m", at.short()));
-    let mut line = format!(
-        "warning: {} of {steps} ended unsolved: the first is time step {}{at}",
-        summary.unsolved_steps, first.step
-    );
-    let largest = summary.max.as_ref().and_then(|max| max.residual_m).unwrap_or(first.residual_m);
-    if largest <= first.tolerance_m || first.tolerance_m == 0.0 {
-        return vec![line];
+    let Some(advice) = summary.unsolved_advice(simulation) else { return Vec::new() };
+    let mut lines = vec![format!("warning: {}", advice.text)];
+    if let Some(remedy) = advice.remedy {
+        let option = |key: &str, value: &str| match key {
+            "newton_iterations" => format!("--set simulation.newton_iterations={value}"),
+            _ => format!("--{key} {value}").trim_end().to_owned(),
+        };
+        lines.push(format!("  what helps: {}", remedy.in_words(option)));
     }
-    line += &format!("; the largest residual is {}", residual_text(largest, first.tolerance_m));
-    let iterations = summary.max.as_ref().and_then(|max| max.newton_iterations).unwrap_or(0.0);
-    vec![line, format!("  what helps: {}", remedy(simulation, iterations))]
-}
-
-/// What lowers residuals, after a run that took at most so many Newton `iterations` in a time step.
-fn remedy(simulation: &SimulationParams, iterations: f64) -> String {
-    // Digits of a quarter that rounding has added are left out.
-    let dt = format!("{:.6e}", simulation.dt / 4.0).parse().unwrap_or(simulation.dt / 4.0);
-    let mut text = format!("a quarter of the time step (--dt {dt:?} with four times the --frames)");
-    let limit = simulation.newton_iterations;
-    let most = SimulationParams::MAX_NEWTON_ITERATIONS;
-    if iterations >= limit as f64 && limit < most {
-        let more = (3 * limit).clamp(30, most);
-        text += &format!(", more Newton iterations (--set simulation.newton_iterations={more}), or both");
-    }
-    text
+    lines
 }
 
 /// Time steps that ended at a limit, and obstacles and pins with something in their way or place.

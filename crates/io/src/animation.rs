@@ -30,6 +30,11 @@ pub(crate) trait Animation: Debug + Send + Sync {
     /// Names of the parts, by their numbers in [`Mesh::body`].
     fn names(&self) -> &[String];
 
+    /// Paths of the parts, likewise, if they have some.
+    fn paths(&self) -> &[String] {
+        &[]
+    }
+
     /// File that holds a frame.
     fn path(&self, index: usize) -> &Path;
 

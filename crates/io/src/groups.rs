@@ -36,6 +36,11 @@ impl Groups {
         set.dedup();
     }
 
+    /// Drops the groups without vertices.
+    pub fn drop_empty(&mut self) {
+        self.sets.retain(|_, vertices| !vertices.is_empty());
+    }
+
     /// Gives each vertex another number; those without one leave their groups, which stay even if nothing is
     /// left of them.
     pub fn renumber(&mut self, number: impl Fn(u32) -> Option<u32>) {

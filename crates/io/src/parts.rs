@@ -39,7 +39,7 @@ impl PartsBuilder {
         let first = u32::try_from(self.mesh.positions.len()).ok()?;
         let count = u32::try_from(part.positions.len()).ok()?;
         first.checked_add(count)?;
-        let Mesh { positions, triangles, tets, strands, particles, obstacle, surface, .. } = part;
+        let Mesh { positions, triangles, tets, strands, particles, obstacle, surface, groups, .. } = part;
         // The polygons of the whole are its triangles, in the same order.
         if surface.is_some() || self.mesh.surface.is_some() {
             let whole = self.mesh.surface.get_or_insert_with(|| Surface::of_triangles(&self.mesh.triangles));
@@ -47,6 +47,8 @@ impl PartsBuilder {
             surface.name_objects(&name);
             whole.append(&surface, first);
         }
+        // Groups of one name in several parts are one.
+        groups.iter().for_each(|(name, group)| self.mesh.groups.add(name, group.iter().map(|v| v + first)));
         self.mesh.positions.extend(positions);
         self.mesh.triangles.extend(triangles.iter().map(|t| t.map(|v| v + first)));
         self.mesh.tets.extend(tets.iter().map(|t| t.map(|v| v + first)));

@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 use crate::msh::read_msh;
 use crate::obj::{read_obj, read_segments};
 use crate::ply::read_ply;
-use crate::still::read_still;
+use crate::still::{is_still, read_still};
 use crate::stl::read_stl;
 use crate::tet_list::read_tet_list;
 use crate::tetgen::read_tetgen;
@@ -20,7 +20,7 @@ pub const MESH_ENDINGS: [&str; 14] =
 
 /// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, STL, Gmsh's MSH, Medit's `.mesh`,
 /// TetGen's `.node` and `.ele`, VTK's VTU, lists of tetrahedra (`.t`), strand segments (`.seg`), USD stages and
-/// glTF scenes where nothing moves.
+/// glTF scenes where nothing moves. [`read_mesh_part`](crate::read_mesh_part) reads one part of a file.
 ///
 /// # Errors
 /// A missing, malformed or truncated file, numbers that are not finite, indices out of range, an unknown
@@ -38,7 +38,7 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         "vtu" => read_vtu(path, import),
         "t" => read_tet_list(path, import),
         "seg" => read_segments(path, import),
-        "usda" | "usd" | "usdc" | "usdz" | "gltf" | "glb" => read_still(path, import),
+        stage if is_still(stage) => read_still(path, import),
         _ => {
             let endings = MESH_ENDINGS.map(|ending| format!(".{ending}")).join(", ");
             Err(IoError::content(path, Place::File, format!("not a mesh: only {endings} files are read")))

@@ -172,13 +172,23 @@ pub fn up_of(name: &str) -> PyResult<Up> {
     }
 }
 
-/// Reads a mesh file.
+/// Reads a mesh file, or a part of it.
 #[pyfunction]
-pub fn read_mesh<'py>(py: Python<'py>, path: PathBuf, up: &str, scale: f64) -> PyResult<Bound<'py, PyDict>> {
+pub fn read_mesh<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    up: &str,
+    scale: f64,
+    part: Option<String>,
+) -> PyResult<Bound<'py, PyDict>> {
     let import = Import { up: up_of(up)?, scale };
     import.validate().map_err(error::input)?;
     let read = compute(py, |_| {
-        let mut mesh = bowknot::io::read_mesh(&path, &import).map_err(error::input)?;
+        let read = match &part {
+            Some(part) => bowknot::io::read_mesh_part(&path, &import, part),
+            None => bowknot::io::read_mesh(&path, &import),
+        };
+        let mut mesh = read.map_err(error::input)?;
         if let Some(faults) = mesh.triangulate().describe() {
             tracing::warn!("{}: {faults}", path.display());
         }

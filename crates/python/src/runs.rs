@@ -4,14 +4,16 @@ use crate::compute::compute;
 use crate::error;
 use crate::scene::Scene;
 use bowknot::report::{ReportOptions, write_report};
-use bowknot::run::{Progress, RunOptions};
+use bowknot::run::{Progress, RunOptions, Summary, UnsolvedAdvice};
+use bowknot::scene::SimulationParams;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// Runs a scene into a folder as the command does: its summary as JSON, findings of the check and warnings.
+/// Runs a scene into a folder as the command does: findings of the check, and what to say of time
+/// steps that did not go well.
 #[pyfunction]
 pub fn run(
     py: Python<'_>,
@@ -19,7 +21,7 @@ pub fn run(
     out: PathBuf,
     resume: bool,
     check: bool,
-) -> PyResult<(String, Vec<String>, Vec<String>)> {
+) -> PyResult<(Vec<String>, Vec<String>)> {
     let done = compute(py, |stop| {
         let options = RunOptions { out, resume, check, interrupt: Some(Arc::clone(stop)), watch: None };
         let mut go_on = |_: &Progress<'_>| match stop.load(Ordering::Relaxed) {
@@ -29,8 +31,22 @@ pub fn run(
         bowknot::run::run(&scene.scene, &options, &mut go_on).map_err(error::simulation)
     })?;
     let outcome = done.finish()??;
-    let summary = serde_json::to_string(&outcome.summary).map_err(error::internal)?;
-    Ok((summary, outcome.findings, outcome.warnings))
+    Ok((outcome.findings, advice(&outcome.summary, &scene.scene.simulation)))
+}
+
+/// What the command says at the end of a run about time steps, with the keys of scenes.
+fn advice(summary: &Summary, simulation: &SimulationParams) -> Vec<String> {
+    let unsolved = summary.unsolved_advice(simulation).map(|UnsolvedAdvice { text, remedy }| {
+        let key = |key: &str, value: &str| match value {
+            "" => format!("simulation.{key}"),
+            value => format!("simulation.{key} = {value}"),
+        };
+        match remedy {
+            Some(remedy) => format!("{text}; what helps: {}", remedy.in_words(key)),
+            None => text,
+        }
+    });
+    unsolved.into_iter().chain(summary.held_apart_advice()).collect()
 }
 
 /// Writes the page of a run: its path, and what it leaves out.

@@ -319,6 +319,36 @@ def test_warnings_are_logged(caplog):
     assert any("inside" in record.getMessage() for record in caplog.records)
 
 
+def test_a_run_warns_of_time_steps_that_are_not_solved(tmp_path):
+    # A single Newton iteration does not balance the forces of an impact.
+    scene = Scene.builtin("drape", scale=0.2)
+    for key, value in (("frames", 8), ("newton_iterations", 1)):
+        scene.set(f"simulation.{key}", value)
+    scene.set("body.0.velocity", [0, 0, -4])
+    with pytest.warns(bowknot.BowknotWarning) as told:
+        run = bowknot.run(scene, tmp_path / "run")
+    text = str(told.pop(bowknot.BowknotWarning).message)
+    count = run.summary["unsolved_steps"]
+    assert count > 0 and text.startswith(f"drape: {count} of 8 time steps ended unsolved: the first is time step ")
+    assert "the largest residual is" in text and "times the tolerance" in text
+    quarter = scene.dt / 4
+    assert f"simulation.dt = {quarter:.5g}" in text and "four times the simulation.frames" in text
+    assert "simulation.newton_iterations = 30" in text and "--" not in text
+    calm = Scene.builtin("drape", scale=0.2)
+    calm.set("simulation.frames", 1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", bowknot.BowknotWarning)
+        bowknot.run(calm, tmp_path / "calm")
+
+
+def test_a_run_logs_each_warning_once(tmp_path, caplog):
+    vertices, faces = grid(4, 0.1)
+    scene = Scene(simulation={"frames": 0}, bodies=[{"mesh": vertices, "faces": faces, "friction": 0.5}])
+    with caplog.at_level("WARNING", logger="bowknot"):
+        bowknot.run(scene, tmp_path / "run")
+    assert len(caplog.messages) == len(set(caplog.messages)) == 1 and "friction" in caplog.messages[0]
+
+
 def test_runs_have_pages_and_refuse_used_folders(tmp_path):
     scene = Scene.builtin("drape", scale=0.2)
     scene.set("simulation.frames", 2)

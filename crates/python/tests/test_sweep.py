@@ -42,6 +42,23 @@ def test_all_combinations_are_run_in_order(tmp_path):
     assert not any("second" in key or "memory" in key for row in without_costs(done.rows) for key in row)
 
 
+def test_warnings_of_runs_are_told_once(tmp_path, capfd):
+    sets = {**SETS, "simulation.frames": 8, "simulation.newton_iterations": 1, "body.sheet.velocity": [0, 0, -4]}
+    study = {**SMALL, "set": sets, "grid": {"contact.delta": [0.004, 0.005], "body.sheet.friction": [0.0, 0.1, 0.2]}}
+    with pytest.warns(bowknot.BowknotWarning) as caught:
+        done = sweep(study, tmp_path)
+    # Each run has time steps that are not solved; friction of one side alone has no effect.
+    counts = [row["warnings"] for row in done.rows]
+    assert sum(counts) == len(done.warnings) == len(set(done.warnings)) and min(counts) > 0
+    text = str(caught.pop(bowknot.BowknotWarning).message)
+    lines = text.splitlines()
+    assert lines[0].startswith("run 0 (contact.delta = 0.004, body.sheet.friction = 0.0): ") and "unsolved" in text
+    assert len(lines) == 6 and lines[-1].startswith(f"and {sum(counts) - 5} more")
+    # What was made before is told again.
+    with pytest.warns(bowknot.BowknotWarning):
+        assert sweep(study, tmp_path).warnings == done.warnings
+
+
 def test_a_latin_hypercube_has_one_point_in_each_part():
     ranges = {"a": _design.Range(2.0, 4.0), "b": _design.Range(0.001, 10.0, log=True)}
     ranges["c"] = _design.Range(3, 12, integer=True)

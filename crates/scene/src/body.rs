@@ -23,6 +23,10 @@ pub struct BodySpec {
     /// of the kind. Either this or `shape`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,
+    /// The part of the mesh file that is taken, if it has several: a prim of a USD stage by its name or path, or
+    /// all below that path; a node of a glTF scene, an object of an OBJ by its name. Default: all as one mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part: Option<String>,
     /// Generated mesh, or one by its arrays, see the shapes. Either this or `mesh`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
@@ -89,6 +93,7 @@ impl Default for BodySpec {
             name: String::new(),
             kind: BodyKind::default(),
             mesh: None,
+            part: None,
             shape: None,
             elements: None,
             drop_lines: false,
@@ -135,6 +140,9 @@ impl Parameters for BodySpec {
             checks.contradiction("material", format!("is one of kind {own}, but the body is of kind {kind}"));
         }
         checks.within("material", &self.material);
+        if self.part.is_some() && self.mesh.is_none() {
+            checks.contradiction("part", "needs a mesh file, of which it names a part");
+        }
         match &self.shape {
             None if self.mesh.is_none() => checks.contradiction("mesh", "needs a mesh file, or a shape"),
             None => {}

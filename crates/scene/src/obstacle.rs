@@ -19,6 +19,10 @@ pub struct ObstacleSpec {
     /// surface. This, `shape`, or `sequence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,
+    /// The part of the mesh file or of the animation that is taken, if it has several, as for bodies. Default: all
+    /// as one mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part: Option<String>,
     /// Generated mesh, one by its arrays, or `half-space`, see the shapes. This, `mesh`, or `sequence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
@@ -71,6 +75,7 @@ impl Default for ObstacleSpec {
         Self {
             name: String::new(),
             mesh: None,
+            part: None,
             shape: None,
             sequence: None,
             sequence_rate: 30.0,
@@ -123,6 +128,9 @@ impl ObstacleSpec {
 
     /// What the obstacle is made of: exactly one of `mesh`, `shape` and `sequence`.
     fn check_geometry(&self, checks: &mut Checks) {
+        if self.part.is_some() && self.mesh.is_none() && self.sequence.is_none() {
+            checks.contradiction("part", "needs a mesh file or a sequence, of which it names a part");
+        }
         match (&self.mesh, &self.shape, &self.sequence) {
             (Some(_), Some(_), _) => {
                 checks.contradiction("shape", "stands beside mesh; only one of them may be given");

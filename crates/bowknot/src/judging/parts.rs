@@ -6,31 +6,6 @@ use super::params::JudgingParams;
 use crate::geometry::BodyFilter;
 use crate::io::Mesh;
 
-/// Gives each vertex a part and each part a name, as the mesh's bodies: those that the file tells, else the
-/// objects of an OBJ. What has no name has that of the whole.
-pub(super) fn name_parts(mesh: &mut Mesh, whole: &str) {
-    let whole = || whole.to_owned();
-    if let Some(body) = &mesh.body {
-        let count = body.iter().max().map_or(0, |&last| last as usize + 1);
-        (mesh.names.len()..count).for_each(|number| mesh.names.push(format!("body {number}")));
-        return;
-    }
-    let mut body = vec![0; mesh.positions.len()];
-    let mut names = Vec::new();
-    for polygon in mesh.surface.iter().flat_map(|surface| surface.polygons()) {
-        let name = polygon.labels.object.clone().unwrap_or_else(whole);
-        let number = names.iter().position(|known| *known == name).unwrap_or_else(|| {
-            names.push(name);
-            names.len() - 1
-        });
-        polygon.corners.iter().for_each(|corner| body[corner.vertex as usize] = number as u32);
-    }
-    if names.is_empty() {
-        names.push(whole());
-    }
-    (mesh.body, mesh.names) = (Some(body), names);
-}
-
 /// Marks the obstacles among the parts and drops the elements of those that are left out. Returns a filter
 /// for each part; none if nothing is exempt.
 pub(super) fn exempt(mesh: &mut Mesh, params: &JudgingParams) -> Vec<BodyFilter> {
@@ -69,7 +44,7 @@ pub(super) fn check_patterns(clips: &[Clip], params: &JudgingParams) -> Result<(
         let Some(file) = clip.files().first() else { continue };
         let Frames::Meshes(source) = clip.open(file, params)? else { continue };
         let mut mesh = source.read(0)?;
-        name_parts(&mut mesh, &clip.name());
+        mesh.name_parts(&clip.name());
         parts.extend(mesh.names.into_iter().filter(|name| !parts.contains(name)).collect::<Vec<_>>());
         missing.retain(|pattern| !parts.iter().any(|name| matches(pattern, name)));
         if missing.is_empty() {

@@ -4,7 +4,7 @@ use super::clips::Clip;
 use super::error::JudgingError;
 use super::observer::{JudgedState, JudgingObserver};
 use super::params::JudgingParams;
-use super::parts::{exempt, name_parts};
+use super::parts::exempt;
 use super::report::{FrameVerdict, JudgingReport, PartPairOfFrame};
 use crate::check::{CheckError, Judge, Parts, PathOptions, PathReport, StateOptions};
 use crate::geometry::{BodyFilter, MeshProblem, Point, check_mesh};
@@ -110,7 +110,7 @@ impl<'a> StateJudging<'a> {
     /// Judges a state, and the path from the one before if there is one.
     fn state(&mut self, named: &Named<'_>, mut mesh: Mesh) -> Result<(), JudgingError> {
         let bad = |source| JudgingError::Check { file: named.file.to_owned(), source };
-        name_parts(&mut mesh, &self.whole);
+        mesh.name_parts(&self.whole);
         // Names of faces make no other state.
         mesh.surface = None;
         let filters = exempt(&mut mesh, self.params);

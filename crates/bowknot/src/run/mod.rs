@@ -1,5 +1,6 @@
 //! Whole runs: a scene in, a folder of frames and statistics out.
 
+mod advice;
 mod backends;
 mod checker;
 mod checkpoint;
@@ -15,6 +16,7 @@ mod summary;
 mod watch;
 mod writer;
 
+pub use advice::{Remedy, UnsolvedAdvice, residual_text};
 pub use backends::{BackendRecord, Backends};
 pub use checker::Checker;
 pub use export::{ExportError, ExportOptions, Exported, Rate, export};

@@ -75,7 +75,7 @@ impl FrameSource {
         Ok(Some(Self { store, import: Import::default() }).filter(|source| !source.is_empty()))
     }
 
-    fn of_animation(animation: impl Animation + 'static) -> Self {
+    pub(crate) fn of_animation(animation: impl Animation + 'static) -> Self {
         Self { store: Store::Animation(Arc::new(animation)), import: Import::default() }
     }
 
@@ -134,6 +134,14 @@ impl FrameSource {
     pub fn names(&self) -> &[String] {
         match &self.store {
             Store::Animation(animation) => animation.names(),
+            _ => &[],
+        }
+    }
+
+    /// Paths of the parts, if they have some: those of a USD stage.
+    pub fn paths(&self) -> &[String] {
+        match &self.store {
+            Store::Animation(animation) => animation.paths(),
             _ => &[],
         }
     }

@@ -157,6 +157,97 @@ fn operations_are_those_of_usd() {
 }
 
 #[test]
+fn one_part_of_a_stage_is_chosen_by_name_or_path() {
+    let folder = folder();
+    let path = write(&folder, "a.usda", STAGE);
+    let import = Import { up: Up::Z, scale: 2.0 };
+    let part = |part: &str| read_mesh_part(&path, &import, part);
+    // By its name for people, its name and its path.
+    let cloth = part("The cloth").unwrap();
+    assert_eq!((part("cloth").unwrap(), part("/World/cloth").unwrap()), (cloth.clone(), cloth.clone()));
+    assert_eq!((cloth.positions.len(), cloth.surface.as_ref().map(Surface::len)), (5, Some(2)));
+    let hand = part("hand").unwrap();
+    assert_eq!((hand.positions[0], &hand.triangles[..]), (Point::new(2.0, 0.0, 20.0), &[[0, 2, 1]][..]));
+    assert_eq!((hand.body, hand.names, hand.obstacle), (
+        Some(vec![0; 3]),
+        vec!["hand".to_owned()],
+        Some(vec![true; 3])
+    ));
+    // All below a path.
+    assert_eq!(part("/World/arm").unwrap().triangles, [[0, 2, 1]]);
+    assert_eq!(part("/World/").unwrap(), {
+        let mut whole = read_mesh(&path, &import).unwrap();
+        whole.groups.drop_empty();
+        whole
+    });
+    let error = message(part("/World/ar"));
+    let there = "no part \"/World/ar\"; it has /World/cloth, /World/arm/hand, /World/hair, /World/dots";
+    assert!(error.ends_with(there), "{error}");
+    // Frames of one part.
+    let frames = FrameSource::open(&path).unwrap().part("hand").unwrap();
+    assert_eq!(frames.times(), Some(&[0.1, 0.3, 0.5][..]));
+    assert!(near(frames.read(1).unwrap().positions[2], [-1.0, 1.0, 10.0]));
+    assert!(message(FrameSource::open(&path).unwrap().part("foot")).contains("no part \"foot\""));
+    // Names that several parts have.
+    let twice = "#usda 1.0\ndef \"a\" { def Points \"p\" { point3f[] points = [(1, 0, 0)] } }\n\
+                 def \"b\" { def Points \"p\" { point3f[] points = [(2, 0, 0)] } }\n";
+    let path = write(&folder, "b.usda", twice);
+    assert_eq!(read_mesh_part(&path, &import, "/b").unwrap().positions, [Point::new(4.0, 0.0, 0.0)]);
+    let error = message(read_mesh_part(&path, &import, "p"));
+    assert!(error.contains("2 parts are called \"p\": /a/p, /b/p; give the path of one"), "{error}");
+}
+
+#[test]
+fn objects_of_other_files_are_parts() {
+    let folder = folder();
+    let two = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\no a\nf 1 2 3\no b\ng hem\nf 4 5 6\n";
+    let path = write(&folder, "two.obj", two);
+    let part = read_mesh_part(&path, &Import::default(), "b").unwrap();
+    assert_eq!((part.positions[0].z, &part.triangles[..]), (1.0, &[[0, 1, 2]][..]));
+    assert_eq!(part.groups.get("hem"), Some(&[0, 1, 2][..]));
+    let error = message(read_mesh_part(&path, &Import::default(), "c"));
+    assert!(error.ends_with("two.obj: no part \"c\"; it has a, b"), "{error}");
+    let sewn = write(&folder, "sewn.obj", two.replace("f 4 5 6", "f 3 4 5"));
+    let error = message(read_mesh_part(&sewn, &Import::default(), "a"));
+    assert!(error.contains("an element joins part \"a\" to \"b\""), "{error}");
+}
+
+#[test]
+fn subsets_of_a_stage_are_groups() {
+    let folder = folder();
+    let points = "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (2, 0, 0), (2, 1, 0)]";
+    let faces = "int[] faceVertexCounts = [3, 4]\nint[] faceVertexIndices = [0, 1, 2, 1, 3, 4, 2]";
+    let subset = |name: &str, content: &str| format!("def GeomSubset \"{name}\" {{ {content} }}\n");
+    let subsets = [
+        subset("hem", "uniform token elementType = \"point\"\nint[] indices = [4, 0]"),
+        subset("front", "uniform token elementType = \"face\"\nint[] indices = [1]"),
+        // The element type of the schema's fallback.
+        subset("back", "int[] indices = [0]"),
+        subset("edge", "uniform token elementType = \"edge\"\nint[] indices = [0, 1, 1, 3]"),
+        subset("lost", "int[] indices = [2]"),
+        subset("far", "uniform token elementType = \"point\"\nint[] indices = [5]"),
+    ];
+    let mesh = |name: &str| format!("def Mesh \"{name}\" {{\n{points}\n{faces}\n{}}}\n", subsets.concat());
+    let path = write(&folder, "a.usda", format!("#usda 1.0\n{}", mesh("m")));
+    let read = read_mesh(&path, &Import::default()).unwrap();
+    let groups: Vec<(&str, &[u32])> = read.groups.iter().collect();
+    let expected: [(&str, &[u32]); 4] =
+        [("back", &[0, 1, 2]), ("edge", &[0, 1, 3]), ("front", &[1, 2, 3, 4]), ("hem", &[0, 4])];
+    assert_eq!(groups, expected);
+    // Of tetrahedra, and of one part of two.
+    let tets = "def TetMesh \"t\" {\npoint3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)]\n\
+                int4[] tetVertexIndices = [(0, 1, 2, 3), (1, 2, 3, 4)]\n"
+        .to_owned()
+        + &subset("top", "uniform token elementType = \"tetrahedron\"\nint[] indices = [1]")
+        + "}\n";
+    let path = write(&folder, "b.usda", format!("#usda 1.0\n{}{tets}", mesh("m")));
+    let both = read_mesh(&path, &Import::default()).unwrap();
+    assert_eq!(both.groups.get("top"), Some(&[6, 7, 8, 9][..]));
+    let part = read_mesh_part(&path, &Import::default(), "t").unwrap();
+    assert_eq!(part.groups.iter().collect::<Vec<_>>(), [("top", &[1, 2, 3, 4][..])]);
+}
+
+#[test]
 fn our_stages_come_back() {
     let folder = folder();
     let path = folder.path().join("a.usda");

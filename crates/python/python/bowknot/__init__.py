@@ -18,6 +18,7 @@ from ._contacts import Contacts
 from ._errors import (
     ArrayTypeError,
     BowknotError,
+    BowknotWarning,
     DeviceError,
     InputError,
     InternalError,
@@ -46,6 +47,7 @@ __version__: str = _native.__version__
 __all__ = [
     "ArrayTypeError",
     "BowknotError",
+    "BowknotWarning",
     "CheckReport",
     "Checkpoint",
     "Contacts",

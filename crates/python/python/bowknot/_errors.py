@@ -1,4 +1,4 @@
-"""Exceptions of the package; their messages are those of the command."""
+"""Exceptions and warnings of the package; their messages are those of the command."""
 
 
 class BowknotError(Exception):
@@ -23,3 +23,7 @@ class DeviceError(BowknotError, RuntimeError):
 
 class InternalError(BowknotError, RuntimeError):
     """A fault of the library itself."""
+
+
+class BowknotWarning(UserWarning):
+    """A result is not to be trusted as it is: time steps that were not solved, targets of a solver that explodes."""

@@ -6,13 +6,14 @@ import html
 import json
 import os
 import tempfile
+import warnings
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 from . import _native
 from ._call import call, logger
-from ._errors import InputError
+from ._errors import BowknotWarning, InputError
 from ._folders import replaced
 from ._meshes import Mesh, read_mesh
 from ._progress import Callback, Follower, callback_of
@@ -123,6 +124,12 @@ def run(
     Run
         The folder, with its summary.
 
+    Warns
+    -----
+    BowknotWarning
+        Time steps that ended unsolved: how many, the largest residual, and what helps. Pins that held edges over their
+        stretch limits.
+
     Raises
     ------
     InputError
@@ -141,11 +148,11 @@ def run(
         tell = None  # the run is refused
     follower = None if tell is None else Follower(stats, scene.frames, tell)
     with replaced(folder) if overwrite else nullcontext(), follower or nullcontext():
-        _, findings, warnings = call(_native.run, scene._native, folder, bool(resume), bool(check))
+        findings, advice = call(_native.run, scene._native, folder, bool(resume), bool(check))
     if follower is not None and follower.error is not None:
         raise follower.error
-    for warning in warnings:
-        logger.warning("%s", warning)
+    for text in advice:
+        warnings.warn(f"{scene.name}: {text}", BowknotWarning, stacklevel=2)
     done = Run(folder)
     done.findings = findings
     return done

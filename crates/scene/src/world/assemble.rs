@@ -71,7 +71,13 @@ impl Assembly {
     fn body(&mut self, scene: &Scene, body: &BodySpec) -> Result<(), SceneError> {
         let import = Import { up: body.up, scale: body.scale };
         let placing = Placing { import, rotate: body.rotate, translate: body.translate };
-        let part = Part::load(&scene.folder, body.mesh.as_deref(), body.shape.as_ref(), &import)?;
+        let part = Part::load(
+            &scene.folder,
+            body.mesh.as_deref(),
+            body.part.as_deref(),
+            body.shape.as_ref(),
+            &import,
+        )?;
         let mut part = part.into_body(body, &mut self.warnings)?;
         placing.place(&mut part.positions);
         let mut velocities = initial_velocities(body, &part.positions);
@@ -143,7 +149,7 @@ impl Assembly {
             (part, ObstacleMotion::Sequence(frames), presence)
         } else {
             let (mesh, shape) = (obstacle.mesh.as_deref(), obstacle.shape.as_ref());
-            let part = Part::load(&scene.folder, mesh, shape, &import)?;
+            let part = Part::load(&scene.folder, mesh, obstacle.part.as_deref(), shape, &import)?;
             let mut part = part.into_obstacle(&format!("obstacle {}", obstacle.name), &mut self.warnings)?;
             placing.place(&mut part.positions);
             (part, motion(obstacle, placing), Presence::default())

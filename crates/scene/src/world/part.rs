@@ -58,15 +58,19 @@ impl Part {
         }
     }
 
-    /// Loads a mesh file or makes a shape.
+    /// Loads a mesh file, or a part of it, or makes a shape.
     pub fn load(
         folder: &Path,
         mesh: Option<&Path>,
+        part: Option<&str>,
         shape: Option<&Shape>,
         import: &Import,
     ) -> Result<Self, SceneError> {
         let mesh = match (mesh, shape.and_then(Shape::elements)) {
-            (Some(path), _) => io::read_mesh(&folder.join(path), import)?,
+            (Some(path), _) => match part {
+                Some(part) => io::read_mesh_part(&folder.join(path), import, part)?,
+                None => io::read_mesh(&folder.join(path), import)?,
+            },
             (None, Some(mut mesh)) => {
                 mesh.positions.iter_mut().for_each(|p| *p = import.point(p.coords.into()));
                 mesh

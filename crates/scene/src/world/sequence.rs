@@ -36,13 +36,17 @@ pub(super) fn load(
 ) -> Result<(Part, Sequence, Presence), SceneError> {
     let path = folder.join(path);
     let is = |endings: &[&str]| path.extension().is_some_and(|e| endings.iter().any(|known| e == *known));
+    let part = spec.part.as_deref();
     let frames = if path.is_dir() {
-        of_folder(&path, placing)?
+        of_folder(&path, placing, part)?
     } else if is(&ANIMATIONS) {
-        of_animation(&path, placing, spec.sequence_rate)?
+        of_animation(&path, placing, spec)?
     } else if is(&MESH_ENDINGS) {
         let message = "a sequence is a folder of meshes, an animation (USD, glTF, PC2, PVD) or an archive of frames \
                        (.npz), not one mesh; use `mesh`";
+        return Err(IoError::content(&path, Place::File, message).into());
+    } else if part.is_some() {
+        let message = "an archive has no parts; leave out the key part";
         return Err(IoError::content(&path, Place::File, message).into());
     } else {
         of_archive(&path, placing)?
@@ -67,9 +71,12 @@ pub(super) fn load(
 }
 
 /// The frames of an animation, as many per second as the sequence has, if the file knows its times.
-fn of_animation(path: &Path, placing: &Placing, rate: f64) -> Result<Frames, IoError> {
-    let options = FrameOptions { import: placing.import, rate: Some(rate), ..FrameOptions::default() };
-    let source = FrameSource::open_with(path, &options)?;
+fn of_animation(path: &Path, placing: &Placing, spec: &ObstacleSpec) -> Result<Frames, IoError> {
+    let (import, rate) = (placing.import, Some(spec.sequence_rate));
+    let mut source = FrameSource::open_with(path, &FrameOptions { import, rate, ..FrameOptions::default() })?;
+    if let Some(part) = &spec.part {
+        source = source.part(part)?;
+    }
     let mut known: Option<Mesh> = None;
     let mut frames = Vec::with_capacity(source.len());
     for index in 0..source.len() {
@@ -89,7 +96,7 @@ fn of_animation(path: &Path, placing: &Placing, rate: f64) -> Result<Frames, IoE
 }
 
 /// The meshes of a folder in natural order of their names.
-fn of_folder(folder: &Path, placing: &Placing) -> Result<Frames, IoError> {
+fn of_folder(folder: &Path, placing: &Placing, part: Option<&str>) -> Result<Frames, IoError> {
     let mut files = files_in(folder, &MESH_ENDINGS)?;
     // A frame that is there in several formats, or in the two files of TetGen, is one frame.
     files.dedup_by(|later, earlier| later.file_stem() == earlier.file_stem());
@@ -99,7 +106,11 @@ fn of_folder(folder: &Path, placing: &Placing) -> Result<Frames, IoError> {
     let mut known: Option<(&PathBuf, Mesh)> = None;
     let mut frames = Vec::with_capacity(files.len());
     for file in &files {
-        let mut mesh = match io::read_mesh(file, &placing.import) {
+        let read = match part {
+            Some(part) => io::read_mesh_part(file, &placing.import, part),
+            None => io::read_mesh(file, &placing.import),
+        };
+        let mut mesh = match read {
             Err(IoError::Empty { .. }) => {
                 frames.push(None);
                 continue;

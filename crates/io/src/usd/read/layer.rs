@@ -57,7 +57,7 @@ pub(super) struct ArrayPlace {
 
 /// Attributes that meshes come from; others are not kept.
 pub(super) fn counts(name: &str) -> bool {
-    const NAMES: [&str; 13] = [
+    const NAMES: [&str; 15] = [
         "points",
         "faceVertexCounts",
         "faceVertexIndices",
@@ -71,6 +71,9 @@ pub(super) fn counts(name: &str) -> bool {
         "xformOpOrder",
         OBSTACLE,
         "tetVertexIndices",
+        // Of subsets.
+        "elementType",
+        "indices",
     ];
     NAMES.contains(&name) || name.starts_with("xformOp:") || name.starts_with(SKIN)
 }

@@ -7,6 +7,7 @@ mod layer;
 mod lexer;
 mod part;
 mod stage;
+mod subset;
 mod text;
 mod xform;
 

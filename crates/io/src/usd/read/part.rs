@@ -11,6 +11,9 @@ use bowknot_errors::counted;
 /// Kinds of prims that are parts of a mesh.
 const KINDS: [&str; 4] = ["Mesh", "TetMesh", "BasisCurves", "Points"];
 
+/// The kind of prims that are subsets of the mesh that they are in.
+pub(super) const SUBSET: &str = "GeomSubset";
+
 /// Whether prims of this kind are parts of a mesh.
 pub(super) fn is_part(kind: &str) -> bool {
     KINDS.contains(&kind)

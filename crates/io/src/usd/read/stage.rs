@@ -1,7 +1,8 @@
 //! A stage as an animation.
 
 use super::layer::{Attribute, Layer, Prim, SKIN, Value};
-use super::part::{elements, is_other_shape, is_part};
+use super::part::{SUBSET, elements, is_other_shape, is_part};
+use super::subset::add_subsets;
 use super::text::{Arrays, read_layer};
 use super::xform::Placement;
 use crate::animation::{Animation, FrameOptions, frame_times};
@@ -21,6 +22,8 @@ pub(crate) struct Stage {
     arrays: Arrays,
     parts: Vec<Part>,
     placements: Vec<Placement>,
+    /// Of the parts.
+    paths: Vec<String>,
     /// All parts where nothing moves.
     mesh: Mesh,
     /// Time codes of the frames; a single 0 if nothing moves.
@@ -66,8 +69,10 @@ impl Stage {
         }
         let names = names(&found);
         let (parts, prims): (Vec<Part>, Vec<Prim>) = found.into_iter().unzip();
-        let mut stage =
-            Self { parts, arrays, placements, mesh: Mesh::default(), codes: Vec::new(), times: None };
+        let paths = parts.iter().map(|part| part.path.clone()).collect();
+        let (mesh, codes) = (Mesh::default(), Vec::new());
+        let mut stage = Self { parts, paths, arrays, placements, mesh, codes, times: None };
+        let mut unfit = Notes::default();
         let mut builder = PartsBuilder::default();
         for ((index, name), prim) in names.into_iter().enumerate().zip(&prims) {
             let part = &mut stage.parts[index];
@@ -79,18 +84,23 @@ impl Stage {
             let mut mesh = elements(&stage.arrays, &part.path, prim, points, mirrored)?;
             mesh.positions = stage.part_positions(&stage.parts[index], None)?;
             mesh.triangulate();
+            if !add_subsets(&stage.arrays, prim, &mut mesh.groups, points)? {
+                unfit.add("subsets that are no lists of its faces or points, so left out", &part.path);
+            }
             let overflow =
                 || stage.arrays.fault(&stage.parts[index].path, "more vertices than 32 bits count");
             builder.add(mesh, name).ok_or_else(overflow)?;
         }
+        unfit.warn(&stage.arrays.path, &Layer::default());
         stage.mesh = builder.finish();
         stage.set_times(&layer, options.rate);
         Ok(stage)
     }
 
-    /// The mesh where nothing moves: default values, else those of the first time codes.
-    pub fn into_mesh(self) -> Mesh {
-        self.mesh
+    /// The mesh where nothing moves: default values, else those of the first time codes. And the paths of its
+    /// parts.
+    pub fn into_mesh(self) -> (Mesh, Vec<String>) {
+        (self.mesh, self.paths)
     }
 
     fn set_times(&mut self, layer: &Layer, rate: Option<f64>) {
@@ -182,6 +192,10 @@ impl Animation for Stage {
         &self.mesh.names
     }
 
+    fn paths(&self) -> &[String] {
+        &self.paths
+    }
+
     fn path(&self, _index: usize) -> &Path {
         &self.arrays.path
     }
@@ -263,7 +277,10 @@ impl Walk<'_> {
             chain.push(self.placements.len());
             self.placements.push(placement);
         }
-        for child in std::mem::take(&mut prim.children) {
+        let is_subset = |child: &Prim| child.kind == SUBSET;
+        let (subsets, children) = std::mem::take(&mut prim.children).into_iter().partition(is_subset);
+        prim.children = subsets;
+        for child in children {
             self.prim(child, &path, &chain)?;
         }
         if !is_part(&prim.kind) {

@@ -9,17 +9,19 @@ import inspect
 import os
 import sys
 import types
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from .. import _native
-from .._errors import InputError
+from .._errors import BowknotWarning, InputError
 from .._runs import Run
 from . import _study, _table
 from ._drive import drive, plan
 from ._local import LocalPool
 from ._progress import Printer, Progress
 from ._store import place, store
+from ._warnings import in_short, told
 
 __all__ = ["Progress", "SweepResult", "sweep"]
 
@@ -35,15 +37,19 @@ class SweepResult:
         The table in it; empty if none was written.
     rows : list of dict
         One per run, in the order of the study.
+    warnings : iterable of str
+        The warnings of the runs.
     """
 
-    def __init__(self, out: str, table: str, rows: list[dict[str, Any]]) -> None:
+    def __init__(self, out: str, table: str, rows: list[dict[str, Any]], warnings: Iterable[str] = ()) -> None:
         #: The folder of the study, or its URL.
         self.out = out
         #: Path or URL of the table; empty if the sweep was of one part.
         self.table = table
         #: The rows of the table.
         self.rows = rows
+        #: The warnings of all runs, each with the name of its run; `runs/HASH/sweep.json` has those of one.
+        self.warnings = list(warnings)
 
     @property
     def failures(self) -> list[dict[str, Any]]:
@@ -96,6 +102,11 @@ def sweep(
     SweepResult
         The table and its rows.
 
+    Warns
+    -----
+    BowknotWarning
+        The first warnings of the runs, and how many more there are.
+
     Raises
     ------
     InputError
@@ -144,7 +155,7 @@ def sweep(
         ]
         if not part:
             results.write(read.table, _table.content(read.table, rows, planned.keys))
-        return SweepResult(read.out, "" if part else results.path(read.table), rows)
+        return SweepResult(read.out, "" if part else results.path(read.table), rows, told(planned.cases, outcomes))
 
     try:
         drive(read, planned, results, pool, part, tell, outcomes)
@@ -152,7 +163,10 @@ def sweep(
         # The table says what is left.
         finish()
         raise
-    return finish()
+    result = finish()
+    if result.warnings:
+        warnings.warn(in_short(result.warnings), BowknotWarning, stacklevel=2)
+    return result
 
 
 #: The outcome of a run that was not made.

@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import signal
 import sys
+import warnings
 
 from . import SweepResult, sweep
-from .._errors import BowknotError, InputError
+from .._errors import BowknotError, BowknotWarning, InputError
+from ._warnings import in_short
 
 #: How many failures are listed; the table has all.
 _LISTED = 20
@@ -27,6 +29,8 @@ def main(arguments: list[str] | None = None) -> int:
     # Batch systems end jobs by SIGTERM: as Ctrl-C does, with checkpoints.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # They are told without the place in this file.
+    warnings.simplefilter("ignore", BowknotWarning)
     try:
         result = sweep(
             given.study,
@@ -57,6 +61,8 @@ def _part(text: str) -> tuple[int, int]:
 
 
 def _tell(result: SweepResult) -> None:
+    if result.warnings:
+        print(f"warning: {in_short(result.warnings)}", file=sys.stderr)
     for entry in result.failures[:_LISTED]:
         print(f"run {entry['run']} failed: {entry['reason']} ({entry['folder']})", file=sys.stderr)
     if len(result.failures) > _LISTED:

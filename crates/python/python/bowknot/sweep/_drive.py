@@ -73,7 +73,7 @@ def plan(study: Study) -> Plan:
         try:
             cases.append(Case(values, resolver.hash(resolver.scene(values).to_toml(short=False))))
         except InputError as error:
-            problems.setdefault(str(error).removeprefix("assignment: "), _named(index, values))
+            problems.setdefault(str(error).removeprefix("assignment: "), named(index, values))
     if problems:
         listed = [f"{where}: {problem}" for problem, where in problems.items()]
         more = [f"and {len(listed) - _LISTED} other problems"] if len(listed) > _LISTED else []
@@ -81,7 +81,8 @@ def plan(study: Study) -> Plan:
     return Plan(cases, resolver)
 
 
-def _named(index: int, values: dict[str, Any]) -> str:
+def named(index: int, values: dict[str, Any]) -> str:
+    """A run in words, with the values that it has."""
     words = ", ".join(f"{key} = {value!r}" for key, value in values.items())
     return f"run {index} ({words})" if words else f"run {index}"
 

@@ -9,12 +9,13 @@ import logging
 import socket
 import threading
 import time
+import warnings
 from pathlib import Path
 from typing import Any
 
 from .. import _native
 from .._call import logger
-from .._errors import BowknotError, InputError
+from .._errors import BowknotError, BowknotWarning, InputError
 from .._runs import Run, run
 from .._scene import Scene
 from ._store import clear, store
@@ -66,7 +67,7 @@ def _made(job: dict[str, Any]) -> dict[str, Any]:
     scene = Scene.from_toml(job["scene"] + "\n")
     _forget_memory()
     cpu, wall = time.process_time(), time.perf_counter()
-    with _warnings() as warnings, results.folder(job["run"], job["keep"]) as folder:
+    with _warnings() as told, results.folder(job["run"], job["keep"]) as folder:
         done = _run(scene, folder, job["check"])
         found = columns(done.summary, done.stats)
     cost = {
@@ -79,9 +80,9 @@ def _made(job: dict[str, Any]) -> dict[str, Any]:
         "status": "done",
         "reason": "",
         "version": job["version"],
-        "warnings": warnings,
+        "warnings": list(told),
         "findings": done.findings,
-        "columns": {"warnings": len(warnings), **found, **cost},
+        "columns": {"warnings": len(told), **found, **cost},
     }
     results.finish(job["run"], outcome)
     return outcome
@@ -131,18 +132,24 @@ class _Limit:
 
 @contextlib.contextmanager
 def _warnings() -> Any:
-    """The warnings of a block, in words."""
-    found: list[str] = []
+    """The warnings of a block, in words, each once: a run that is tried again repeats them."""
+    found: dict[str, None] = {}
 
     class Keep(logging.Handler):
         def emit(self, record: logging.LogRecord) -> None:
-            found.append(record.getMessage())
+            found[record.getMessage()] = None
+
+    def keep(message: Warning | str, *_: object) -> None:
+        found[str(message)] = None
 
     handler, before = Keep(logging.WARNING), logger.propagate
     logger.addHandler(handler)
     logger.propagate = False
     try:
-        yield found
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", BowknotWarning)
+            warnings.showwarning = keep
+            yield found
     finally:
         logger.removeHandler(handler)
         logger.propagate = before
