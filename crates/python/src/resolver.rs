@@ -8,18 +8,25 @@ use bowknot::check::{Judge, StateOptions};
 use bowknot::geometry::Point;
 use bowknot::recording::States;
 use bowknot::simulator::Contact;
-use bowknot::twoway::{AcceptedState, BodyContact, HalfSpaceContact, Observer, ResolveInput, Statistics};
+use bowknot::twoway::{
+    AcceptedState, BodyContact, CollisionScene, HalfSpaceContact, Observer, ResolveInput, Statistics, max_stretch,
+};
 use bowknot_errors::counted;
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyBaseException;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde::Serialize;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 /// Largest number of intersections of a start that a message names.
 const MAX_LISTED: usize = 5;
+
+/// A ratio of an edge's length in a target to its length at rest that no sane solver reaches: neighbors would have to
+/// part by a hundred edges in one call.
+const ABSURD_STRETCH: f64 = 100.0;
 
 /// What a resolver is made of.
 struct Inner {
@@ -67,8 +74,21 @@ enum Fault {
     Intersects(String),
 }
 
-/// A resolved state, what the call did as JSON, and the exception that a signal raised meanwhile.
-type Resolved<'py> = (Bound<'py, PyArray2<f64>>, String, Option<Py<PyBaseException>>);
+/// An edge of a target that is far too long: its vertices, and its ratio to its rest length.
+type LongEdge = ([u32; 2], f64);
+
+/// A resolved state, what the call did as JSON, the longest edge of a target that no sane solver makes, and the
+/// exception that a signal raised meanwhile.
+type Resolved<'py> = (Bound<'py, PyArray2<f64>>, String, Option<LongEdge>, Option<Py<PyBaseException>>);
+
+/// What a call did.
+#[derive(Serialize)]
+struct Info {
+    #[serde(flatten)]
+    statistics: Statistics,
+    /// Largest ratio of a deformable body's edge in the target to its rest length.
+    max_target_stretch: f64,
+}
 
 #[pymethods]
 impl Resolver {
@@ -147,7 +167,7 @@ impl Resolver {
         let mut guard = self.inner.try_lock().map_err(|_| error::busy("resolver"))?;
         let inner = guard.as_mut().ok_or_else(|| error::broken("resolver"))?;
         let positions = &mut x;
-        let work = |stop: &Arc<AtomicBool>| -> Result<Statistics, Fault> {
+        let work = |stop: &Arc<AtomicBool>| -> Result<(Info, Option<LongEdge>), Fault> {
             let Inner { resolver, judge, fixed: own, groups, last } = inner;
             if check && *positions != *last {
                 refuse_intersections(judge, positions)?;
@@ -166,21 +186,27 @@ impl Resolver {
             if check {
                 last.clone_from(positions);
             }
-            Ok(statistics)
+            let scene = resolver.scene();
+            let [_, max_target_stretch] = max_stretch(scene, [positions, scene.rest()], &y);
+            let long = match max_target_stretch > ABSURD_STRETCH {
+                true => absurd_edge(scene, &y, input.prescribed),
+                false => None,
+            };
+            Ok((Info { statistics, max_target_stretch }, long))
         };
         let done = compute(py, work)?;
-        let statistics = match done.result {
+        let (info, long) = match done.result {
             Err(message) => {
                 *guard = None;
                 return Err(error::internal(message));
             }
             Ok(Err(Fault::Input(message))) => return Err(error::input(message)),
             Ok(Err(Fault::Intersects(message))) => return Err(error::intersection(message)),
-            Ok(Ok(statistics)) => statistics,
+            Ok(Ok(info)) => info,
         };
-        let info = serde_json::to_string(&statistics).map_err(error::internal)?;
+        let info = serde_json::to_string(&info).map_err(error::internal)?;
         let signal = done.signal.map(|signal| signal.into_value(py));
-        Ok((arrays::point_array(py, &x)?, info, signal))
+        Ok((arrays::point_array(py, &x)?, info, long, signal))
     }
 
     /// The contacts that press at the end of the last call, which stood for a time step [s].
@@ -208,6 +234,20 @@ impl Resolver {
             ("separation_speed", lengths.separation_speed),
         ])
     }
+}
+
+/// The longest edge between two free vertices of a target that is more than [`ABSURD_STRETCH`] times as long as at
+/// rest, and as the mean edge: edges at rest that are far shorter than the others tell nothing.
+fn absurd_edge(scene: &CollisionScene, y: &[Point], prescribed: &[bool]) -> Option<LongEdge> {
+    let (model, rest, mean) = (scene.model(), scene.rest(), scene.lengths().edge);
+    let is_led = |v: u32| model.is_obstacle(v) || prescribed.get(v as usize) == Some(&true);
+    let ratio = |&[a, b]: &[u32; 2]| {
+        let length = |x: &[Point]| (x[a as usize] - x[b as usize]).norm();
+        let (now, before) = (length(y), length(rest));
+        let is_absurd = !is_led(a) && !is_led(b) && now > ABSURD_STRETCH * before.max(mean);
+        is_absurd.then(|| ([a, b], now / before))
+    };
+    model.topology().edges.iter().filter_map(ratio).max_by(|(_, r), (_, s)| r.total_cmp(s))
 }
 
 /// Refuses a start that intersects.

@@ -232,9 +232,14 @@ impl Simulator {
     }
 
     /// Force and torque that all contacts exert on a body.
-    fn contact_wrench(&self, name: &str, about: [f64; 3]) -> PyResult<[[f64; 3]; 2]> {
+    fn contact_wrench(&self, name: &str, about: [f64; 3], by: Option<&str>) -> PyResult<[[f64; 3]; 2]> {
         self.read(|simulator| {
-            let wrench = simulator.contact_wrench(name, &Point::from(about)).map_err(error::input)?;
+            let about = Point::from(about);
+            let wrench = match by {
+                Some(other) => simulator.contact_wrench_by(name, other, &about),
+                None => simulator.contact_wrench(name, &about),
+            };
+            let wrench = wrench.map_err(error::input)?;
             Ok([wrench.force.into(), wrench.torque.into()])
         })
     }

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
+import pickle
 import subprocess
 from pathlib import Path
 
 import bowknot
 import numpy as np
 import pytest
+from conftest import grid
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
@@ -144,3 +147,87 @@ def test_skins_and_instances_of_binary_usd(tmp_path: Path) -> None:
     stage.Save()
     report = bowknot.check_files(tmp_path / "arm.usdc")
     assert [frame["intersections"] > 0 for frame in report.files] == [False, False, True], report.files
+
+
+def two_shirts(path: Path) -> Path:
+    """A binary stage of two meshes with subsets, the second moving."""
+    pytest.importorskip("pxr")
+    from pxr import Usd, UsdGeom
+
+    stage = Usd.Stage.CreateNew(str(path))
+    for name, z in {"Shirt": 0.0, "Sleeve": 2.0}.items():
+        mesh = UsdGeom.Mesh.Define(stage, f"/World/{name}")
+        mesh.CreateFaceVertexCountsAttr([3, 3])
+        mesh.CreateFaceVertexIndicesAttr([0, 1, 2, 2, 1, 3])
+        points = [(0, 0, z), (1, 0, z), (0, 1, z), (1, 1, z)]
+        mesh.CreateSubdivisionSchemeAttr("none")
+        if name == "Sleeve":
+            for frame in range(3):
+                mesh.CreatePointsAttr().Set([(x, y, z + frame) for x, y, z in points], frame)
+        else:
+            mesh.CreatePointsAttr(points)
+        for subset, kind, indices in (("hem", "point", [3, 0]), ("front", "face", [1])):
+            UsdGeom.Subset.CreateGeomSubset(mesh, subset, kind, indices)
+    stage.SetTimeCodesPerSecond(10)
+    stage.Save()
+    return path
+
+
+def test_a_part_of_binary_usd(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    path = two_shirts(tmp_path / "shirts.usdc")
+    shirt = bowknot.read_mesh(path, part="Shirt")
+    assert len(shirt.vertices) == 4 and (shirt.vertices[:, 2] == 0.0).all()
+    groups = {name: list(vertices) for name, vertices in shirt.groups.items()}
+    assert groups == {"hem": [0, 3], "front": [1, 2, 3]}
+    assert (bowknot.read_mesh(path, part="/World/Sleeve", scale=0.5).vertices[:, 2] == 1.0).all()
+    with pytest.raises(bowknot.InputError) as refused:
+        bowknot.read_mesh(path, part="Cape")
+    assert str(refused.value) == f'{path}: no part "Cape"; it has /World/Shirt, /World/Sleeve'
+    # All of it, with a warning that names the file that was given.
+    caplog.clear()
+    assert len(bowknot.read_mesh(path).vertices) == 8
+    assert caplog.messages == [
+        f"{path}: its 2 parts are read as one mesh: Shirt, Sleeve, ..; `part` takes one of them"
+    ]
+    scene = bowknot.Scene()
+    scene.add_body(path, part="Sleeve", name="sleeve", scale=0.1)
+    scene.add_pin("sleeve", group="hem")
+    assert scene.info()["vertices"] == 4
+    with pytest.raises(bowknot.InputError, match="part: names a part of a mesh file"):
+        scene.add_body(shirt, part="Shirt")
+    with pytest.raises(bowknot.InputError, match="part: needs a mesh file"):
+        scene.add_obstacle(shape="half-space", part="Shirt")
+
+
+def test_binary_usd_leads_an_obstacle(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = two_shirts(tmp_path / "shirts.usdc")
+    monkeypatch.setenv("LOCALAPPDATA" if os.name == "nt" else "XDG_CACHE_HOME", str(tmp_path / "cache"))
+    scene = bowknot.Scene(simulation={"frames": 10, "dt": 0.01})
+    scene.add_body(*grid(4, 0.2, -1.0), name="cloth")
+    scene.add_obstacle(sequence=path, part="Sleeve", name="sleeve", sequence_rate=10)
+    # Saved and pickled scenes lead it as well.
+    scene.save(tmp_path / "scene.toml")
+    for again in (scene, bowknot.Scene.from_toml(tmp_path / "scene.toml"), pickle.loads(pickle.dumps(scene))):
+        simulator = bowknot.Simulator(again)
+        start = simulator.positions_of("sleeve")
+        for _ in range(5):
+            simulator.step()
+        assert len(start) == 4 and np.allclose(simulator.positions_of("sleeve") - start, [0, 0, 0.5])
+    # What is said of it names the file that was given.
+    scene.add_obstacle(sequence=path, part="Cape", name="cape")
+    with pytest.raises(bowknot.InputError) as refused:
+        bowknot.Simulator(scene)
+    assert str(path) in str(refused.value) and "cache" not in str(refused.value)
+    bad = tmp_path / "bad.usdc"
+    bad.write_bytes(b"PXR-USDC nothing")
+    with pytest.raises(bowknot.InputError, match="bad.usdc: usd-core refuses it"):
+        scene.add_obstacle(sequence=bad)
+    # In a file of text, a part is a key of the scene.
+    text = tmp_path / "shirts.usda"
+    from pxr import Usd
+
+    Usd.Stage.Open(str(path)).Export(str(text))
+    scene = bowknot.Scene(bodies=[{"mesh": text, "part": "/World/Shirt", "name": "shirt"}])
+    assert scene.info()["vertices"] == 4 and 'part = "/World/Shirt"' in scene.to_toml()

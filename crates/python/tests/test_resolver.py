@@ -4,6 +4,7 @@ import inspect
 import math
 import pickle
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -237,3 +238,56 @@ def test_a_pickle_makes_the_same_resolver():
     assert again.vertex_count == resolver.vertex_count and again.lengths == resolver.lengths
     moved, _ = again.resolve(rest, swapped(rest))
     assert (moved == expected).all()
+
+
+def test_a_target_that_explodes_is_told_once():
+    vertices, faces = grid(4)
+    resolver = bowknot.Resolver(vertices, faces, fixed=[0], stretch_limit=np.inf)
+    quiet = vertices.copy()
+    quiet[5] += [0.0, 0.0, 5.0]  # 15 edges away
+    quiet[0] += [0.0, 0.0, 500.0]  # what is led goes wherever it is told
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        _, info = resolver.resolve(vertices, quiet)
+    assert info.max_target_stretch > 1000
+    wild = vertices.copy()
+    wild[5] += [0.0, 0.0, 100.0]
+    with pytest.warns(bowknot.BowknotWarning, match="vertices .* 5 .*most likely explodes") as told:
+        new, info = resolver.resolve(vertices, wild)
+    assert len(told) == 1 and told[0].filename == __file__
+    longest = max(np.linalg.norm(wild[a] - wild[b]) for a, b in [(5, 4), (5, 6), (5, 1), (5, 9), (5, 0), (5, 10)])
+    assert 0.9 < info.max_target_stretch * (1 / 3) / longest < 1.1
+    assert 1.0 < info.max_stretch <= info.max_target_stretch * 1.001
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        resolver.resolve(vertices, wild)
+    # An edge that is far shorter than the others tells nothing.
+    short = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1e-5, 1e-5, 0]])
+    resolver = bowknot.Resolver(short, [[0, 1, 3], [0, 3, 2]], stretch_limit=np.inf)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        _, info = resolver.resolve(short, short + [[0, 0, 0.1], [0, 0, 0], [0, 0, 0], [0, 0, 0]])
+    assert info.max_target_stretch > 1000
+
+
+def test_the_wrench_of_one_body_on_another():
+    vertices, faces = grid(5, 0.4)
+    both = np.concatenate([vertices + [0, 0, 0.011], vertices + [0, 0, 0.023]])
+    bodies = np.repeat([0, 1], len(vertices))
+    resolver = bowknot.Resolver(
+        both, np.concatenate([faces, faces + 25]), bodies=bodies, masses=0.01, planes=[[0, 0, 1, 0]], delta=0.01
+    )
+    x, dt = both, 0.01
+    for _ in range(20):
+        x, _ = resolver.resolve(x, x - [0, 0, 9.81 * dt**2], dt=dt)
+    contacts = resolver.contacts(dt)
+    weight = 25 * 0.01 * 9.81
+    above, _ = contacts.wrench(1, by=0)
+    below, _ = contacts.wrench(0, by=1)
+    ground, _ = contacts.wrench(0, by=2)
+    assert np.allclose(above, [0, 0, weight], atol=0.05 * weight) and np.allclose(above, -below)
+    assert np.allclose(ground, [0, 0, 2 * weight], atol=0.05 * weight)
+    whole, torque = contacts.wrench(0, [1, 0, 0])
+    assert np.allclose(whole, below + ground)
+    parts = [contacts.wrench(0, [1, 0, 0], by=other)[1] for other in (0, 1, 2)]
+    assert np.allclose(torque, sum(parts))

@@ -177,6 +177,14 @@ def test_pins_select_groups_of_a_mesh_file(tmp_path):
     scene.add_body(mesh, name="cloth")
     scene.add_pin("cloth", mesh.groups["hem"])
     assert np.array_equal(Simulator(scene).positions_of("cloth"), mesh.vertices)
+    # Groups of a mesh object are known by name, too.
+    scene = Scene(bodies=[{"mesh": mesh, "name": "cloth"}], pins=[{"body": "cloth", "group": "hem"}])
+    assert "vertices" in scene.to_toml()
+    named = scene.copy()
+    named.add_pin("cloth", group=["hem"])
+    assert np.array_equal(Simulator(scene).positions_of("cloth"), mesh.vertices)
+    with pytest.raises(InputError, match="no group 'hen'; the mesh has hem"):
+        named.add_pin("cloth", group="hen")
     wrong = Scene()
     wrong.add_body(mesh=tmp_path / "a.obj", name="cloth")
     wrong.add_pin("cloth", group="hen")

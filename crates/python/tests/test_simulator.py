@@ -6,6 +6,7 @@ import pickle
 import platform
 import re
 import subprocess
+import warnings
 
 import numpy as np
 import pytest
@@ -344,6 +345,7 @@ def test_a_run_warns_of_time_steps_that_are_not_solved(tmp_path):
 def test_a_run_logs_each_warning_once(tmp_path, caplog):
     vertices, faces = grid(4, 0.1)
     scene = Scene(simulation={"frames": 0}, bodies=[{"mesh": vertices, "faces": faces, "friction": 0.5}])
+    scene.add_obstacle(shape="half-space", translate=[0, 0, -1])
     with caplog.at_level("WARNING", logger="bowknot"):
         bowknot.run(scene, tmp_path / "run")
     assert len(caplog.messages) == len(set(caplog.messages)) == 1 and "friction" in caplog.messages[0]

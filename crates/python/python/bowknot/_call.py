@@ -24,6 +24,9 @@ _NAMES = (
     ),
 )
 
+#: Files that the library reads in the place of others, and those, which messages name.
+_FILES: dict[str, str] = {}
+
 _T = TypeVar("_T")
 
 
@@ -39,7 +42,15 @@ def call(function: Callable[..., _T], *arguments: object) -> _T:
             logger.log(level, "%s", _translated(text))
 
 
+def read_instead(file: str, named: str | None) -> None:
+    """Says that the library reads a file in the place of another one, or does so no more."""
+    if named is None:
+        _FILES.pop(file, None)
+    else:
+        _FILES[file] = named
+
+
 def _translated(text: str) -> str:
-    for there, here in _NAMES:
+    for there, here in (*_FILES.items(), *_NAMES):
         text = text.replace(there, here)
     return text

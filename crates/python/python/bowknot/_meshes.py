@@ -171,7 +171,9 @@ def _three(points: Any) -> Any:
     return points
 
 
-def read_mesh(path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0) -> Mesh:
+def read_mesh(
+    path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0, part: str | None = None
+) -> Mesh:
     """Reads a mesh file: OBJ, PLY, STL, Gmsh (``.msh``), Medit (``.mesh``), TetGen, VTU, USD, glTF, ``.t``, ``.seg``.
 
     Parameters
@@ -182,6 +184,9 @@ def read_mesh(path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0
         The axis of the file that points up; in Bowknot, z does.
     scale : float
         Length of the file's unit [m]: 0.01 for centimeters.
+    part : str, optional
+        The part that is taken of a file that has several: a prim of a USD stage by its name or path, or all below that
+        path; a node of a glTF scene, an object of an OBJ by its name. Default: all as one mesh.
 
     Returns
     -------
@@ -191,7 +196,9 @@ def read_mesh(path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0
     Raises
     ------
     InputError
-        A missing or malformed file, with the place.
+        A missing or malformed file, with the place; a part that is not there, with those that are.
     """
+    if not (part is None or isinstance(part, str)):
+        raise InputError(f"part: expected the name of a part, got {type(part).__name__}")
     with as_text(path) as text:
-        return Mesh(**call(_native.read_mesh, text, up, float(scale)))
+        return Mesh(**call(_native.read_mesh, text, up, float(scale), part))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _arrays, _native, _toml
 from ._call import call
 from ._contacts import Contacts, contacts_of
-from ._errors import InputError
+from ._errors import BowknotWarning, InputError
 from ._info import Info
 from ._meshes import mesh_of
 
@@ -215,6 +216,7 @@ class Resolver:
 
     def _make(self, arrays: list[NDArray[Any]], sets: list[str]) -> None:
         self._count = len(arrays[0])
+        self._warned = False
         self._native = call(_native.Resolver, *arrays, sets)
         self._made_of = (arrays, sets)
 
@@ -272,7 +274,14 @@ class Resolver:
         x : ndarray of float64, shape (n, 3)
             The new state [m]: `out` if it is given.
         info : Info
-            What was done: ``converged``, ``steps``, ``min_gap_m``, ``remaining_m``, ``max_stretch`` and others.
+            What was done: ``converged``, ``steps``, ``min_gap_m``, ``remaining_m``, and others. ``max_stretch`` and
+            ``max_target_stretch`` are the largest ratios of an edge to its rest length in the result and in the target.
+
+        Warns
+        -----
+        BowknotWarning
+            A target in which an edge between free vertices is more than 100 times as long as at rest, and as the mean
+            edge: the solver that computes targets most likely explodes. Once for each resolver.
 
         Raises
         ------
@@ -289,7 +298,12 @@ class Resolver:
         given_y = _arrays.points("y", y, self._count)
         given_start = None if start is None else _arrays.points("start", start, self._count)
         given_fixed = None if fixed is None else _arrays.flags("fixed", fixed, self._count)
-        result, text, signal = call(self._native.resolve, given_x, given_y, given_fixed, given_start, dt, bool(check))
+        result, text, long, signal = call(
+            self._native.resolve, given_x, given_y, given_fixed, given_start, dt, bool(check)
+        )
+        if long is not None and not self._warned:
+            self._warned = True
+            _warn_of(*long)
         if out is not None:
             np.copyto(out, result)
             result = out
@@ -321,6 +335,16 @@ class Resolver:
 
     def __repr__(self) -> str:
         return f"Resolver({self._count} vertices)"
+
+
+def _warn_of(edge: tuple[int, int], stretch: float) -> None:
+    text = (
+        f"y: the target stretches the edge between vertices {edge[0]} and {edge[1]} to {stretch:.3g} times its rest "
+        "length: the solver that computes targets most likely explodes. Results have no intersections, but no meaning "
+        "either. What helps: velocities from where calls end, (new - x) / dt; a smaller time step; softer springs or an "
+        "implicit solver; the same unit for rest, x and y. info.max_target_stretch has this ratio of each call."
+    )
+    warnings.warn(text, BowknotWarning, stacklevel=3)
 
 
 def _check_out(out: Any, rows: int) -> None:

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _toml
 from ._call import call
 from ._errors import InputError
 from ._meshes import Mesh, is_path, mesh_of, read_mesh
-from ._usd import needs_usd
+from ._usd import kept_text, needs_usd
 
 #: Keys of a body or an obstacle that hold arrays.
 _ARRAYS = ("faces", "tets", "edges", "particles")
@@ -72,13 +72,16 @@ class Scene:
         output: _Table | None = None,
     ) -> None:
         self._native = _native.Scene.empty()
+        self._groups: dict[str, dict[str, NDArray[np.uint32]]] = {}
         tables = {"simulation": simulation, "contact": contact, "solver": solver, "output": output}
         self._extend(bodies, obstacles, pins, {k: v for k, v in tables.items() if v is not None})
 
     @classmethod
-    def _of(cls, native: _native.Scene) -> Scene:
+    def _of(cls, native: _native.Scene, groups: Mapping[str, Any] | None = None) -> Scene:
         scene = cls.__new__(cls)
         scene._native = native
+        # Of bodies whose meshes are given by arrays, which have no groups in a scene file.
+        scene._groups = dict(groups or {})
         return scene
 
     @classmethod
@@ -141,8 +144,8 @@ class Scene:
             Elements of an array of vertices: triangles of a cloth (m, 3), tetrahedra of a solid (t, 4), edges of
             strands (k, 2). Without any, each vertex is a particle.
         **keys
-            Keys of ``[[body]]``: ``name``, ``material``, ``translate``, ``friction``, ``shape`` and others. ``kind``
-            follows from the elements or the shape.
+            Keys of ``[[body]]``: ``name``, ``material``, ``translate``, ``friction``, ``shape`` and others; ``part``
+            takes one part of a mesh file. ``kind`` follows from the elements or the shape.
 
         Raises
         ------
@@ -236,7 +239,7 @@ class Scene:
 
     def copy(self) -> Scene:
         """A copy, which later changes of this scene do not change."""
-        return self._of(self._native)
+        return self._of(self._native, self._groups)
 
     def __copy__(self) -> Scene:
         return self.copy()
@@ -270,6 +273,7 @@ class Scene:
     ) -> None:
         document: dict[str, Any] = dict(tables or {})
         meshes: list[tuple[Any, ...]] = []
+        groups = dict(self._groups)
         for key, entries in (("body", bodies), ("obstacle", obstacles)):
             plain = []
             for index, entry in enumerate(entries):
@@ -280,12 +284,31 @@ class Scene:
                 if mesh is not None:
                     edges = mesh.edges
                     meshes.append((key, index, mesh.vertices, mesh.faces, mesh.tets, edges))
+                    if key == "body" and mesh.groups:
+                        groups[entry.get("name") or f"body{len(self.bodies) + index}"] = mesh.groups
             if plain:
                 document[key] = plain
-        held = [dict(pin) for pin in pins]
+        held = [_with_vertices(pin, groups) for pin in pins]
         if held:
             document["pin"] = held
         self._native = call(self._native.extended, _toml.document(document), meshes)
+        self._groups = groups
+
+
+def _with_vertices(pin: _Table, groups: Mapping[str, Mapping[str, NDArray[np.uint32]]]) -> dict[str, Any]:
+    """A pin with the vertices of its group in place of the group, if its body has groups that the scene does not."""
+    plain = dict(pin)
+    of_body = groups.get(plain.get("body", ""))
+    if of_body is None or "group" not in plain:
+        return plain
+    given = plain.pop("group")
+    names = [given] if isinstance(given, str) else list(given)
+    for name in names:
+        if name not in of_body:
+            raise InputError(f"pin of {plain['body']}: no group {name!r}; the mesh has {', '.join(of_body)}")
+    own = np.asarray(plain.get("vertices", np.zeros(0, np.uint32)), np.uint32)
+    plain["vertices"] = np.unique(np.concatenate([own, *(of_body[name] for name in names)]))
+    return plain
 
 
 def _restored(text: str) -> Scene:
@@ -312,8 +335,11 @@ def _split(what: str, entry: _Table) -> tuple[dict[str, Any], Mesh | None]:
     arrays = {key: plain.pop(key) for key in _ARRAYS if key in plain}
     mesh = plain.get("mesh")
     if is_path(mesh) and needs_usd(mesh):
-        import_keys = {key: plain.pop(key) for key in ("up", "scale") if key in plain}
+        import_keys = {key: plain.pop(key) for key in ("up", "scale", "part") if key in plain}
         plain["mesh"] = mesh = read_mesh(mesh, **import_keys)
+    sequence = plain.get("sequence")
+    if is_path(sequence) and needs_usd(sequence):
+        plain["sequence"] = kept_text(sequence)
     if mesh is None or is_path(mesh):
         if arrays:
             raise InputError(f"{what}: {', '.join(arrays)} without vertices; give them as mesh")
@@ -323,6 +349,8 @@ def _split(what: str, entry: _Table) -> tuple[dict[str, Any], Mesh | None]:
             raise InputError(f"{what}.{other}: stands beside mesh; only one of them may be given")
     del plain["mesh"]
     found = mesh_of(mesh, **arrays, name=f"{what}.mesh")
+    if "part" in plain:
+        raise InputError(f"{what}.part: names a part of a mesh file, but the mesh is given by its arrays")
     if len(found.vertices) == 0:
         raise InputError(f"{what}.mesh: there are no vertices")
     return plain, found

@@ -319,10 +319,11 @@ class Simulator:
         return contacts_of(call(self._native.contacts))
 
     def contact_wrench(
-        self, name: str, about: ArrayLike = (0.0, 0.0, 0.0)
+        self, name: str, about: ArrayLike = (0.0, 0.0, 0.0), *, by: str | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Force [N] and torque [N m] about a point that all contacts exert on a body, an obstacle or a half-space."""
-        force, torque = call(self._native.contact_wrench, name, _arrays.vector("about", about))
+        """Force [N] and torque [N m] about a point that contacts exert on a body, an obstacle or a half-space: all of
+        them, or those with ``by`` alone."""
+        force, torque = call(self._native.contact_wrench, name, _arrays.vector("about", about), by)
         return np.array(force), np.array(torque)
 
     def pin_forces(self, name: str) -> NDArray[np.float64]:

@@ -44,19 +44,28 @@ impl Simulator {
     /// # Errors
     /// No such body or obstacle.
     pub fn contact_wrench(&self, name: &str, about: &Point) -> Result<Wrench, DriveError> {
+        let side = self.side(name)?;
+        Ok(Wrench::of_contacts(&self.contacts(), about, |own, _| Some(own) == side))
+    }
+
+    /// What the [contacts](Self::contacts) with one other body, obstacle or half-space exert, otherwise as
+    /// [`Self::contact_wrench`].
+    ///
+    /// # Errors
+    /// No such body or obstacle.
+    pub fn contact_wrench_by(&self, name: &str, other: &str, about: &Point) -> Result<Wrench, DriveError> {
+        let sides = [self.side(name)?, self.side(other)?];
+        Ok(Wrench::of_contacts(&self.contacts(), about, |own, by| [Some(own), Some(by)] == sides))
+    }
+
+    /// The side of contacts that a body, an obstacle or a half-space is.
+    fn side(&self, name: &str) -> Result<Option<ContactSide>, DriveError> {
         self.require(name)?;
         let half_space = || self.world.half_space_names.iter().position(|other| other == name);
-        let side = match self.world.index_of(name) {
+        Ok(match self.world.index_of(name) {
             Some(body) => Some(ContactSide::Body(body as u32)),
             None => half_space().map(|h| ContactSide::HalfSpace(h as u32)),
-        };
-        let contacts = self.contacts();
-        let forces = contacts.iter().flat_map(|contact| {
-            let on = [contact.force, -contact.force];
-            let of_sides = contact.sides.into_iter().zip(contact.points.into_iter().zip(on));
-            of_sides.filter(|(own, _)| Some(*own) == side).map(|(_, force)| force)
-        });
-        Ok(Wrench::about(about, forces))
+        })
     }
 
     /// The force that a pin exerted on each of its vertices in the last time step, in its order [N]; empty if

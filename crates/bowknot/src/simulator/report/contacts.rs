@@ -116,6 +116,19 @@ pub struct Wrench {
 }
 
 impl Wrench {
+    /// What contacts exert on a side about a point: those of which `counts` holds of this side and the other.
+    pub(crate) fn of_contacts(
+        contacts: &[Contact],
+        about: &Point,
+        counts: impl Fn(ContactSide, ContactSide) -> bool,
+    ) -> Self {
+        let forces = contacts.iter().flat_map(|contact| {
+            let ([a, b], [p, q]) = (contact.sides, contact.points);
+            [(counts(a, b), p, contact.force), (counts(b, a), q, -contact.force)]
+        });
+        Self::about(about, forces.filter(|(counts, ..)| *counts).map(|(_, place, force)| (place, force)))
+    }
+
     /// What forces at points add up to about a point.
     pub(crate) fn about(point: &Point, forces: impl Iterator<Item = (Point, Vector)>) -> Self {
         forces.fold(Self::default(), |sum, (place, force)| Self {

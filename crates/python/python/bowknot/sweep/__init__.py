@@ -37,18 +37,18 @@ class SweepResult:
         The table in it; empty if none was written.
     rows : list of dict
         One per run, in the order of the study.
-    warnings : iterable of str
-        The warnings of the runs.
+    warnings : iterable of (str, str)
+        Runs and their warnings.
     """
 
-    def __init__(self, out: str, table: str, rows: list[dict[str, Any]], warnings: Iterable[str] = ()) -> None:
+    def __init__(self, out: str, table: str, rows: list[dict[str, Any]], warnings: Iterable[tuple[str, str]] = ()) -> None:
         #: The folder of the study, or its URL.
         self.out = out
         #: Path or URL of the table; empty if the sweep was of one part.
         self.table = table
         #: The rows of the table.
         self.rows = rows
-        #: The warnings of all runs, each with the name of its run; `runs/HASH/sweep.json` has those of one.
+        #: The warnings of all runs, each behind the name of its run; `runs/HASH/sweep.json` has those of one.
         self.warnings = list(warnings)
 
     @property
