@@ -7,7 +7,7 @@ use crate::path::is_above;
 use crate::primitives::{Scene, closest_points, gather, pairs};
 use crate::report::{Intersection, PairClass, StateOptions, StateReport};
 use crate::walk::Meeting;
-use bowknot_geometry::{Point, intersection};
+use bowknot_geometry::{Point, Vector, intersection};
 use rayon::prelude::*;
 
 /// A pair that intersects.
@@ -87,31 +87,60 @@ impl Judge {
         ));
         found.par_sort_unstable();
 
-        let intersections: Vec<Intersection> =
-            found.par_iter().map(|found| self.describe(x, found)).collect();
-        let body_pairs = by_bodies(intersections.iter().map(|i| (i.bodies, Some(i.depth), i.place)));
-        let intersections = intersections.into_iter().take(options.limit).collect();
+        let listed = &found[..found.len().min(options.limit)];
+        let intersections = listed.par_iter().map(|found| self.describe(x, found)).collect();
+        let depths: Vec<([Option<u32>; 2], Option<f64>)> =
+            found.par_iter().map(|found| (self.bodies_of(found), Some(self.depth(x, found)))).collect();
+        let body_pairs = by_bodies(depths.into_iter(), |number| self.place_of(x, &found[number]));
         let nearest = if options.distance { self.nearest(x, scene) } else { None };
         let intersection_count = found.len();
         Ok(StateReport { intersections, intersection_count, edge_triangle_count, body_pairs, nearest })
     }
 
-    fn describe(&self, x: &[Point], &(class, elements): &FoundPair) -> Intersection {
+    fn describe(&self, x: &[Point], found: &FoundPair) -> Intersection {
+        let &(class, elements) = found;
         let sides = self.sides(class, elements);
-        let (place, depth) = match class {
-            PairClass::EdgeTriangle => {
-                let point = |v: u32| x[v as usize];
-                let [edge, triangle] = sides;
-                crossing([edge[0], edge[1]].map(point), [triangle[0], triangle[1], triangle[2]].map(point))
-            }
-            PairClass::VertexHalfSpace => {
-                let ([vertex, _], height) = self.half_space_places(elements, &x[elements[0] as usize]);
-                (vertex, (-height).max(0.0))
-            }
-            _ => (closest_points(class, &gather(x, sides)).0[0], 0.0),
-        };
+        let (place, depth) = (self.place_of(x, found), self.depth(x, found));
         let vertices = sides.map(<[u32]>::to_vec);
         Intersection { class, elements, vertices, bodies: self.side_bodies(sides), place, depth }
+    }
+
+    fn bodies_of(&self, &(class, elements): &FoundPair) -> [Option<u32>; 2] {
+        self.side_bodies(self.sides(class, elements))
+    }
+
+    /// See [`Intersection::depth`].
+    fn depth(&self, x: &[Point], &(class, elements): &FoundPair) -> f64 {
+        match class {
+            PairClass::EdgeTriangle => {
+                let (edge, triangle) = points(x, self.sides(class, elements));
+                let (normal, heights) = heights(&edge, &triangle);
+                if heights[0] * heights[1] >= 0.0 {
+                    return 0.0;
+                }
+                let nearer = heights[0].abs().min(heights[1].abs());
+                // The length of a tiny normal may underflow.
+                (nearer / normal.norm()).min((edge[1] - edge[0]).norm())
+            }
+            PairClass::VertexHalfSpace => {
+                let (_, height) = self.half_space_places(elements, &x[elements[0] as usize]);
+                (-height).max(0.0)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// A point of the overlap, to rounding.
+    fn place_of(&self, x: &[Point], &(class, elements): &FoundPair) -> Point {
+        let sides = self.sides(class, elements);
+        match class {
+            PairClass::EdgeTriangle => {
+                let (edge, triangle) = points(x, sides);
+                crossing(edge, triangle)
+            }
+            PairClass::VertexHalfSpace => x[elements[0] as usize],
+            _ => closest_points(class, &gather(x, sides)).0[0],
+        }
     }
 }
 
@@ -127,18 +156,26 @@ fn touch(x: &[Point], a: &[u32], b: &[u32]) -> bool {
     }
 }
 
-/// A point of the overlap of an edge and a triangle, and how deep it is, to rounding: where the edge crosses
-/// the triangle's plane, or if it runs along that, the best of the closest points of the edge with the
-/// triangle's edges and of its ends with the triangle.
-fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> (Point, f64) {
+/// The points of an edge and of a triangle.
+fn points(x: &[Point], [edge, triangle]: [&[u32]; 2]) -> ([Point; 2], [Point; 3]) {
+    let point = |v: u32| x[v as usize];
+    ([edge[0], edge[1]].map(point), [triangle[0], triangle[1], triangle[2]].map(point))
+}
+
+/// The normal of a triangle, as long as twice its area, and the products of it with the ends of an edge.
+fn heights(edge: &[Point; 2], triangle: &[Point; 3]) -> (Vector, [f64; 2]) {
     let normal = (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0]));
-    let heights = edge.map(|p| normal.dot(&(p - triangle[0])));
+    (normal, edge.map(|p| normal.dot(&(p - triangle[0]))))
+}
+
+/// A point of the overlap of an edge and a triangle, to rounding: where the edge crosses the triangle's plane,
+/// or if it runs along that, the best of the closest points of the edge with the triangle's edges and of its
+/// ends with the triangle.
+fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> Point {
+    let (_, heights) = heights(&edge, &triangle);
     let [p, q] = edge;
     if heights[0] * heights[1] < 0.0 {
-        let nearer = heights[0].abs().min(heights[1].abs());
-        // The length of a tiny normal may underflow.
-        let depth = (nearer / normal.norm()).min((q - p).norm());
-        return (p + (q - p) * (heights[0] / (heights[0] - heights[1])), depth);
+        return p + (q - p) * (heights[0] / (heights[0] - heights[1]));
     }
     let [a, b, c] = triangle;
     let candidates = [
@@ -150,5 +187,5 @@ fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> (Point, f64) {
     ];
     let measured = candidates.map(|(class, points)| closest_points(class, &points));
     let best = measured.iter().fold(&measured[0], |best, next| if next.1 < best.1 { next } else { best });
-    (best.0[0], 0.0)
+    best.0[0]
 }

@@ -76,9 +76,11 @@ impl Judge {
         let mut hits: Vec<Hit> = looks.into_iter().flat_map(|looks| looks.hits).chain(below).collect();
         hits.par_sort_unstable_by_key(|hit| (hit.class, hit.elements));
         let hit_count = hits.len();
-        let hits: Vec<PathHit> = hits.par_iter().map(|hit| self.describe_hit(x0, x1, hit)).collect();
-        let body_pairs = by_bodies(hits.iter().map(|hit| (hit.bodies, None, hit.places[0])));
-        let hits = hits.into_iter().take(options.limit).collect();
+        let bodies = |hit: &Hit| self.side_bodies(self.sides(hit.class, hit.elements));
+        let place = |number: usize| self.describe_hit(x0, x1, &hits[number]).places[0];
+        let body_pairs = by_bodies(hits.iter().map(|hit| (bodies(hit), None)), place);
+        let listed = &hits[..hit_count.min(options.limit)];
+        let hits = listed.par_iter().map(|hit| self.describe_hit(x0, x1, hit)).collect();
         Ok(PathReport { hits, hit_count, body_pairs, candidates })
     }
 

@@ -1,18 +1,12 @@
 //! Archives of frames, and collision problems as archives of one frame.
 
-use bowknot::io::npz::Archive;
 use bowknot::io::{FrameStack, IoError, MeshView};
 use bowknot::recording::States;
 use std::path::Path;
 
-/// Whether an archive is a collision problem rather than a stack of frames.
-pub fn is_problem(file: &Path) -> Result<bool, IoError> {
-    Ok(!Archive::open(file)?.has("X"))
-}
-
 /// The frames `X` of an archive, or the start `x` of a collision problem.
 pub fn read(file: &Path) -> Result<FrameStack, IoError> {
-    if !is_problem(file)? {
+    if !States::are_in(file)? {
         return FrameStack::read(file);
     }
     let states = States::read(file)?;

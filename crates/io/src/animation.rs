@@ -27,6 +27,11 @@ pub(crate) trait Animation: Debug + Send + Sync {
     /// Time of each frame [s], if the file knows it.
     fn times(&self) -> Option<&[f64]>;
 
+    /// Time code of each frame, if the file has them.
+    fn codes(&self) -> Option<&[f64]> {
+        None
+    }
+
     /// Names of the parts, by their numbers in [`Mesh::body`].
     fn names(&self) -> &[String];
 

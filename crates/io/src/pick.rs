@@ -56,6 +56,10 @@ impl Animation for Picked {
         self.source.times()
     }
 
+    fn codes(&self) -> Option<&[f64]> {
+        self.source.codes()
+    }
+
     fn names(&self) -> &[String] {
         // The meshes have them.
         &[]
@@ -187,7 +191,8 @@ impl Mesh {
         self.strands.iter_mut().flatten().for_each(renumber);
         self.particles.iter_mut().for_each(renumber);
         let part_of: Vec<u32> = keep.iter().map(|&keep| u32::from(!keep)).collect();
-        self.surface = self.surface.take().and_then(|surface| surface.split(&part_of, &local, 2).swap_remove(0));
+        self.surface =
+            self.surface.take().and_then(|surface| surface.split(&part_of, &local, 2).swap_remove(0));
         self.groups.renumber(|v| stays(v).then(|| local[v as usize]));
         self.groups.drop_empty();
         let body: Vec<u32> = body.iter().filter_map(|&number| new[number as usize]).collect();

@@ -52,6 +52,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(runs::run, module)?)?;
     module.add_function(wrap_pyfunction!(runs::report, module)?)?;
     module.add_function(wrap_pyfunction!(pictures::render, module)?)?;
+    module.add_function(wrap_pyfunction!(pictures::body_color, module)?)?;
     module.add_function(wrap_pyfunction!(device::gpus, module)?)?;
     Ok(())
 }

@@ -201,6 +201,9 @@ pub fn read_mesh<'py>(
     }
     let result = arrays_of(py, &mesh)?;
     result.set_item("groups", groups)?;
+    result.set_item("bodies", arrays::list(py, mesh.body.iter().flatten().copied()))?;
+    result.set_item("names", &mesh.names)?;
+    result.set_item("obstacles", arrays::list(py, mesh.obstacle.iter().flatten().copied()))?;
     Ok(result)
 }
 

@@ -4,9 +4,9 @@ use crate::arrays::{self, Indices, Rows};
 use crate::compute::compute;
 use crate::error;
 use bowknot_render::{
-    Camera, Elements, Fit, Frame, Model, Quality, RenderError, Renderer, Shot, Style, View,
+    Camera, Elements, Fit, Frame, Model, OBSTACLE_COLOR, Quality, RenderError, Renderer, Shot, Style, View,
 };
-use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 /// What is drawn.
@@ -20,6 +20,7 @@ pub struct Drawn<'py> {
     body: PyReadonlyArray1<'py, u32>,
     planes: Rows<'py>,
     values: PyReadonlyArray1<'py, f32>,
+    colors: PyReadonlyArray2<'py, u8>,
     radius: f64,
 }
 
@@ -32,6 +33,13 @@ pub struct Look {
     eye: Option<[f64; 3]>,
     target: Option<[f64; 3]>,
     fine: bool,
+}
+
+/// The color of a body by its number; of obstacles without one.
+#[pyfunction]
+#[pyo3(signature = (body))]
+pub fn body_color(body: Option<u32>) -> [u8; 3] {
+    body.map_or(OBSTACLE_COLOR, bowknot_render::body_color)
 }
 
 /// Draws a picture: an array of shape (height, width, 3).
@@ -63,6 +71,7 @@ pub fn render<'py>(py: Python<'py>, drawn: Drawn<'_>, look: Look) -> PyResult<Bo
     let (obstacle, body) = (arrays::column(&drawn.obstacle), arrays::column(&drawn.body));
     let values = arrays::column(&drawn.values);
     let ground = arrays::half_spaces(&drawn.planes)?;
+    let colors: Vec<u8> = drawn.colors.as_array().iter().copied().collect();
     let radius = drawn.radius;
     let picture = compute(py, |_| {
         let elements = Elements {
@@ -73,7 +82,10 @@ pub fn render<'py>(py: Python<'py>, drawn: Drawn<'_>, look: Look) -> PyResult<Bo
             body: &body,
         };
         let style = Style { strand_radius: radius, particle_radius: radius };
-        let model = Model::new(&elements, &positions, &style).map_err(refused)?;
+        let mut model = Model::new(&elements, &positions, &style).map_err(refused)?;
+        if !colors.is_empty() {
+            model.set_colors(colors.as_chunks::<3>().0).map_err(refused)?;
+        }
         let aspect = f64::from(look.size[0]) / f64::from(look.size[1].max(1));
         let mut fit = Fit::new(view, look.fov, aspect);
         positions.iter().for_each(|x| fit.add(x, radius));

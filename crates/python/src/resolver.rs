@@ -9,7 +9,8 @@ use bowknot::geometry::Point;
 use bowknot::recording::States;
 use bowknot::simulator::Contact;
 use bowknot::twoway::{
-    AcceptedState, BodyContact, CollisionScene, HalfSpaceContact, Observer, ResolveInput, Statistics, max_stretch,
+    AcceptedState, BodyContact, CollisionScene, HalfSpaceContact, Observer, ResolveInput, Statistics,
+    max_stretch,
 };
 use bowknot_errors::counted;
 use numpy::{PyArray2, PyReadonlyArray1};

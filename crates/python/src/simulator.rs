@@ -231,6 +231,10 @@ impl Simulator {
         self.read(|simulator| contacts::arrays_of(py, &simulator.contacts(), simulator.world().bodies.len()))
     }
 
+    fn mass_of(&self, name: &str) -> PyResult<f64> {
+        self.read(|simulator| simulator.mass_of(name).map_err(error::input))
+    }
+
     /// Force and torque that all contacts exert on a body.
     fn contact_wrench(&self, name: &str, about: [f64; 3], by: Option<&str>) -> PyResult<[[f64; 3]; 2]> {
         self.read(|simulator| {

@@ -54,9 +54,63 @@ def test_a_mesh_is_drawn():
     assert bowknot.render(strand, size=(64, 48), quality="fast").std() > 0.0
 
 
+def test_bodies_have_colors(small, tmp_path):
+    vertices, faces = grid(5)
+    both, faces = np.concatenate([vertices, vertices + [1.2, 0, 0]]), np.concatenate([faces, faces + 25])
+    options = {"size": (96, 48), "view": "top", "quality": "fast"}
+    bodies = np.repeat([0, 1], 25)
+
+    def halves(pixels):
+        """The mean color of what is not gray, left and right."""
+        sides = pixels[:, :48], pixels[:, 48:]
+        colored = [side[np.ptp(side.astype(int), axis=2) > 40] for side in sides]
+        return [side.mean(axis=0) if len(side) else None for side in colored]
+
+    plain = bowknot.render(both, faces, **options)
+    left, right = halves(bowknot.render(both, faces, bodies=bodies, **options))
+    assert np.abs(left - right).max() > 30 and np.abs(halves(plain)[0] - halves(plain)[1]).max() < 10
+    left, right = halves(bowknot.render(both, faces, bodies=bodies, colors=["#c02020", (20, 20, 200)], **options))
+    assert left.argmax() == 0 and right.argmax() == 2
+    left, right = halves(bowknot.render(both, faces, bodies=bodies, obstacles=bodies == 1, **options))
+    assert left is not None and right is None
+    green = bowknot.render(small, colors={small.names[0]: "#10d010"}, size=(96, 48), quality="fast")
+    assert (green != bowknot.render(small, size=(96, 48), quality="fast")).any()
+    # Parts of a file have colors of their own.
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in both)
+    for name, first in (("a", 0), ("b", len(faces) // 2)):
+        text += f"o {name}\n" + "".join(f"f {i + 1} {j + 1} {k + 1}\n" for i, j, k in faces[first : first + 32])
+    (tmp_path / "two.obj").write_text(text)
+    left, right = halves(bowknot.render(tmp_path / "two.obj", colors={"b": "#10d010"}, **options))
+    assert right.argmax() == 1 and left.argmax() != 1
+
+
+def test_frames_of_a_run_are_drawn(tmp_path):
+    scene = bowknot.Scene(simulation={"frames": 12, "dt": 0.02})
+    scene.add_body(*grid(4, 0.4, 0.5), name="cloth")
+    scene.add_obstacle(shape="half-space", name="ground")
+    run = bowknot.run(scene, tmp_path / "run")
+    options = {"size": (64, 48), "quality": "fast", "eye": [0, -2, 1], "target": [0, 0, 0.3]}
+    first, last = run.render(0, **options), bowknot.Run(run.folder).render(**options)
+    assert (first != last).any() and (last == bowknot.render(run, frame=12, **options)).all()
+    # The same as the simulation that it is: the ground is no square.
+    simulator = bowknot.Simulator(scene)
+    assert np.abs(first.astype(int) - simulator.render(**options)).max() < 8
+    assert (run.render(0, colors={"cloth": "#10d010"}, **options) != first).any()
+    with pytest.raises(InputError, match="frame 13 is not in"):
+        run.render(13, **options)
+    with pytest.raises(InputError, match="frame: only a Run has several"):
+        bowknot.render(*grid(3), frame=0)
+
+
 @pytest.mark.parametrize(
     "options",
     [
+        {"bodies": [0]},
+        {"colors": "red"},
+        {"colors": ["red"]},
+        {"colors": [(0.5, 0.5, 0.5)]},
+        {"colors": [(0, 0, 256)]},
+        {"colors": {"cape": "#000000"}},
         {"size": (0, 0)},
         {"size": (10**6, 10**6)},
         {"size": (-1, 5)},

@@ -124,6 +124,21 @@ impl Model {
         })
     }
 
+    /// Gives each vertex a color of its own, as sRGB, in place of that of its body.
+    ///
+    /// # Errors
+    /// [`RenderError::Length`].
+    pub fn set_colors(&mut self, colors: &[[u8; 3]]) -> Result<(), RenderError> {
+        if colors.len() != self.vertex_count {
+            let (given, expected) = (colors.len(), self.vertex_count);
+            return Err(RenderError::Length { what: "colors", given, expected });
+        }
+        for (own, [r, g, b]) in self.colors.iter_mut().zip(colors) {
+            *own = [*r, *g, *b, own[3]];
+        }
+        Ok(())
+    }
+
     /// The frame in the layout of the shader.
     pub(crate) fn drawing(&self, frame: &Frame<'_>) -> Result<Drawing, RenderError> {
         let n = self.vertex_count;

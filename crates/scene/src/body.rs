@@ -19,7 +19,7 @@ pub struct BodySpec {
     /// What the body is: `cloth`, a surface of triangles; `solid`, a volume of tetrahedra; `strands`, hair or
     /// yarn of edges; `particles`, grains. Default `cloth`.
     pub kind: BodyKind,
-    /// Mesh file (OBJ, PLY, STL, MSH, MESH, ELE, VTU, T, SEG) relative to the scene file, with the elements
+    /// Mesh file (OBJ, PLY, STL, MSH, MESH, ELE, VTU, T, SEG, USD, glTF) relative to the scene file, with the elements
     /// of the kind. Either this or `shape`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,

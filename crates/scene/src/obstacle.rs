@@ -15,7 +15,7 @@ use std::path::PathBuf;
 pub struct ObstacleSpec {
     /// Name in messages. Default `obstacle` and its index.
     pub name: String,
-    /// Mesh file (OBJ, PLY, STL, MSH, MESH, ELE, VTU, T, SEG) relative to the scene file; of tetrahedra, the
+    /// Mesh file (OBJ, PLY, STL, MSH, MESH, ELE, VTU, T, SEG, USD, glTF) relative to the scene file; of tetrahedra, the
     /// surface. This, `shape`, or `sequence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,
@@ -27,9 +27,9 @@ pub struct ObstacleSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
     /// An animation, relative to the scene file: a folder of meshes of equal elements, taken in the order of
-    /// their names, or an NPZ archive of `X[f,n,3]` and `F[m,3]`. Frames are joined linearly. During empty
-    /// frames, which have no vertices or all at one place, the obstacle is not there. This, `mesh`, or
-    /// `shape`.
+    /// their names, a USD stage, a glTF scene or a point cache, or an NPZ archive of `X[f,n,3]` and `F[m,3]`.
+    /// Frames are joined linearly. During empty frames, which have no vertices or all at one place, the
+    /// obstacle is not there. This, `mesh`, or `shape`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sequence: Option<PathBuf>,
     /// Frames of the sequence a second [1/s]. Default 30.

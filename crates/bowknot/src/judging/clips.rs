@@ -2,7 +2,6 @@
 
 use super::error::JudgingError;
 use super::params::JudgingParams;
-use crate::io::npz::Archive;
 use crate::io::{FrameSource, IoError, MESH_ENDINGS, files_in};
 use crate::recording::States;
 use std::collections::BTreeSet;
@@ -106,7 +105,7 @@ impl Clip {
         if let Some(source) = &self.source {
             return Ok(Frames::Meshes(source.clone()));
         }
-        if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz")) && !Archive::open(file)?.has("X") {
+        if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz")) && States::are_in(file)? {
             return Ok(Frames::Problem(Box::new(States::read(file)?)));
         }
         Ok(Frames::Meshes(FrameSource::open_with(file, &params.frames)?))

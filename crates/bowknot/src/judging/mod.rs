@@ -6,17 +6,22 @@
 //! [`JudgingObserver`].
 
 mod clips;
+mod elements;
 mod error;
+mod inside;
 mod observer;
 mod params;
 mod parts;
 mod report;
 mod states;
 
+pub use elements::PartElement;
 pub use error::JudgingError;
 pub use observer::{JudgedState, JudgingObserver};
 pub use params::JudgingParams;
-pub use report::{FrameVerdict, JudgingReport, PartPair, PartPairOfFrame};
+pub use report::{
+    FrameVerdict, HintPair, HintPairOfFrame, InsidePair, JudgingReport, PartPair, PartPairOfFrame,
+};
 
 use bowknot_errors::Parameters;
 use clips::{Clip, Frames};

@@ -1,11 +1,13 @@
 //! States and paths judged one after another.
 
 use super::clips::Clip;
+use super::elements::{PartElement, PartNumbers};
 use super::error::JudgingError;
+use super::inside::inside;
 use super::observer::{JudgedState, JudgingObserver};
 use super::params::JudgingParams;
 use super::parts::exempt;
-use super::report::{FrameVerdict, JudgingReport, PartPairOfFrame};
+use super::report::{FrameVerdict, HintPairOfFrame, JudgingReport, PartPairOfFrame};
 use crate::check::{CheckError, Judge, Parts, PathOptions, PathReport, StateOptions};
 use crate::geometry::{BodyFilter, MeshProblem, Point, check_mesh};
 use crate::io::{FrameSource, Mesh};
@@ -43,6 +45,7 @@ struct Named<'a> {
     file: &'a Path,
     name: String,
     time: Option<f64>,
+    code: Option<f64>,
 }
 
 impl<'a> StateJudging<'a> {
@@ -76,6 +79,7 @@ impl<'a> StateJudging<'a> {
                 false => format!("{}[{index}]", file.display()),
             };
             let time = source.times().map(|times| times[index]);
+            let code = time.and(source.codes()).map(|codes| codes[index]);
             let mut mesh = source.read(index)?;
             // The polygons of a frame have deformed.
             if mesh.body.is_none()
@@ -84,7 +88,7 @@ impl<'a> StateJudging<'a> {
             {
                 self.observer.warned(&format!("{}: {faults}", file.display()));
             }
-            self.state(&Named { file, name, time }, mesh.into_surface())?;
+            self.state(&Named { file, name, time, code }, mesh.into_surface())?;
         }
         Ok(())
     }
@@ -101,7 +105,7 @@ impl<'a> StateJudging<'a> {
             body: Some(problem.body.clone()),
             ..Mesh::default()
         };
-        let named = Named { file, name: file.display().to_string(), time: None };
+        let named = Named { file, name: file.display().to_string(), time: None, code: None };
         self.note_problems(&named, &problem.x, &problem.triangles);
         let judge = Judge::from_model(&model);
         self.judged(&named, &mesh, &problem.x, &judge, None, Some(problem))
@@ -132,6 +136,7 @@ impl<'a> StateJudging<'a> {
         }
         let judge_without = |marked: [&[bool]; 2]| judge_of(&mesh, count, &filters, marked).map_err(bad);
         let mut path = None;
+        let mut hint_pairs = Vec::new();
         if let Some(last) = last.as_ref().filter(|_| self.is_trace || self.params.paths) {
             // What appears or vanishes has no path.
             let common = match last.absent == absent {
@@ -146,6 +151,7 @@ impl<'a> StateJudging<'a> {
                 // What intersects in the frame before is no news.
                 found.hits.retain(|hit| hit.time > 0.0);
                 found.hit_count = found.hits.len();
+                hint_pairs = HintPairOfFrame::all_of(&found.hits, &mesh.names);
                 found.hits.truncate(self.params.listed);
             }
             path = Some(found);
@@ -154,7 +160,8 @@ impl<'a> StateJudging<'a> {
             Some(last) if last.absent == absent => last.judge,
             _ => judge_without([&absent, &[]])?,
         };
-        self.judged(named, &mesh, &positions, &judge, path.as_ref(), None)?;
+        let path = path.as_ref().map(|path| (path, hint_pairs));
+        self.judged(named, &mesh, &positions, &judge, path, None)?;
         self.previous = Some(PreviousState { elements: mesh, absent, judge, positions });
         Ok(())
     }
@@ -166,16 +173,28 @@ impl<'a> StateJudging<'a> {
         mesh: &Mesh,
         positions: &[Point],
         judge: &Judge,
-        path: Option<&PathReport>,
+        path: Option<(&PathReport, Vec<HintPairOfFrame>)>,
         problem: Option<&States>,
     ) -> Result<(), JudgingError> {
-        let Named { file, name, time } = named;
+        let Named { file, name, time, code } = named;
+        let (path, hint_pairs) = path.map_or((None, Vec::new()), |(path, pairs)| (Some(path), pairs));
         let options = StateOptions { limit: self.params.listed, distance: true };
         let report = judge
             .check_state(positions, &options)
             .map_err(|source| JudgingError::Check { file: (*file).to_owned(), source })?;
         let names = &mesh.names;
-        let mut findings: Vec<String> = report.intersections.iter().map(|i| i.in_words(names)).collect();
+        // Numbers within the parts say something new where there are several.
+        let shown = path.filter(|_| self.is_trace || report.is_clear()).map_or(&[][..], |path| &path.hits);
+        let numbers =
+            (names.len() > 1 && !(report.is_clear() && shown.is_empty())).then(|| PartNumbers::new(mesh));
+        let elements: Vec<_> =
+            numbers.iter().flat_map(|n| report.intersections.iter().map(|i| n.of(i))).collect();
+        let within = |pair: Option<&[PartElement; 2]>| {
+            pair.map_or_else(String::new, |[a, b]| format!("; by its part: {a} and {b}"))
+        };
+        let found = report.intersections.iter().enumerate();
+        let mut findings: Vec<String> =
+            found.map(|(k, i)| i.in_words(names) + &within(elements.get(k))).collect();
         findings.extend(more(report.intersection_count, findings.len()));
         if let (Some(limit), Some(nearest)) = (self.params.min_distance, &report.nearest)
             && nearest.distance < limit
@@ -188,21 +207,28 @@ impl<'a> StateJudging<'a> {
         // Where the frame intersects, it would be no wonder that something meets on the way.
         if let Some(path) = path.filter(|_| self.is_trace || report.is_clear()) {
             let hint = if self.is_trace { "" } else { " (a hint: straight between the frames)" };
-            findings.extend(path.hits.iter().map(|hit| hit.in_words(names) + hint));
+            findings.extend(path.hits.iter().map(|hit| {
+                let elements = numbers.as_ref().map(|numbers| numbers.of_hit(hit));
+                hit.in_words(names) + &within(elements.as_ref()) + hint
+            }));
             findings.extend(more(path.hit_count, path.hits.len()));
         }
         let state = JudgedState { file, name, mesh, positions, judge, report: &report, problem };
         let goes_on = report.is_clear() || self.observer.intersected(&state);
+        self.report.add_inside(&inside(mesh, positions, &report.body_pairs), names, name);
         let hits = path.map(|path| path.hit_count);
         self.report.add(FrameVerdict {
             file: name.clone(),
             time_s: *time,
+            time_code: *code,
             intersections: report.intersection_count,
             path_hits: hits.filter(|_| self.is_trace),
             hints_between_frames: hits.filter(|_| !self.is_trace),
             min_distance_m: report.nearest.as_ref().map(|nearest| nearest.distance),
             pairs: report.body_pairs.iter().map(|pair| PartPairOfFrame::new(pair, names)).collect(),
             findings,
+            elements,
+            hint_pairs,
         });
         let done = self.report.states;
         self.total = self.total.max(done);

@@ -112,6 +112,14 @@ pub struct States {
 }
 
 impl States {
+    /// Whether an archive holds a problem rather than a stack of frames.
+    ///
+    /// # Errors
+    /// A missing or malformed archive.
+    pub fn are_in(archive: &Path) -> Result<bool, IoError> {
+        Ok(!Archive::open(archive)?.has("X"))
+    }
+
     /// Reads a problem.
     ///
     /// # Errors

@@ -59,8 +59,7 @@ impl Remedy {
         // Digits of a quarter that rounding has added are left out.
         let dt = format!("{:.6e}", simulation.dt / 4.0).parse().unwrap_or(simulation.dt / 4.0);
         let (limit, most) = (simulation.newton_iterations, SimulationParams::MAX_NEWTON_ITERATIONS);
-        let newton_iterations =
-            (made >= limit as f64 && limit < most).then(|| (3 * limit).clamp(30, most));
+        let newton_iterations = (made >= limit as f64 && limit < most).then(|| (3 * limit).clamp(30, most));
         Self { dt, newton_iterations }
     }
 
@@ -73,7 +72,10 @@ impl Remedy {
             name("frames", "")
         );
         if let Some(more) = self.newton_iterations {
-            text += &format!(", more Newton iterations ({}), or both", name("newton_iterations", &more.to_string()));
+            text += &format!(
+                ", more Newton iterations ({}), or both",
+                name("newton_iterations", &more.to_string())
+            );
         }
         text
     }
@@ -93,6 +95,9 @@ fn two_digits(value: f64) -> String {
     if value >= 10.0 {
         return format!("{value:.0}");
     }
-    let digits = (1.0 - value.log10().floor()).clamp(0.0, 9.0) as usize;
+    let (mut digits, mut shifted) = (1, value);
+    while shifted < 1.0 && digits < 9 {
+        (digits, shifted) = (digits + 1, 10.0 * shifted);
+    }
     if value > 0.0 && value < 1e-4 { format!("{value:.1e}") } else { format!("{value:.digits$}") }
 }

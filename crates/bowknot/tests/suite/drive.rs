@@ -532,11 +532,18 @@ fn contacts_carry_the_weight_of_what_lies_on_them() {
     let block = &world.bodies[world.index_of("block").expect("a body")];
     let masses = simulator.dynamics_model().masses();
     let weight = 9.81 * block.all_vertices().map(|v| masses[v as usize]).sum::<f64>();
+    assert_eq!(9.81 * simulator.mass_of("block").expect("a body"), weight);
+    assert_eq!(simulator.mass_of("ground").expect("a half-space"), 0.0);
+    assert!(simulator.mass_of("blok").is_err());
     let ground = simulator.contact_wrench("ground", &Point::origin()).expect("a half-space");
     assert!((ground.force.z + weight).abs() < 0.01 * weight, "{ground:?} for {weight} N");
     assert!(ground.torque.norm() < 0.01 * weight * 0.06, "{ground:?}");
     let on_block = simulator.contact_wrench("block", &Point::origin()).expect("a body");
     assert!((on_block.force + ground.force).norm() < 1e-12);
+    let by =
+        |other: &str| simulator.contact_wrench_by("block", other, &Point::origin()).expect("names").force;
+    assert!((by("ground") - on_block.force).norm() < 1e-12 && by("block").norm() < 1e-12);
+    assert!(simulator.contact_wrench_by("block", "grund", &Point::origin()).is_err());
     let contacts = simulator.contacts();
     assert!(!contacts.is_empty());
     for contact in &contacts {

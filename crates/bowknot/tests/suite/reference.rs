@@ -5,8 +5,8 @@ use bowknot::dynamics::{
     ClothMaterial, Environment, NewtonParams, ParticleMaterial, SolidMaterial, StrandMaterial,
 };
 use bowknot::scene::{
-    BodyKind, BodySpec, FrictionPair, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region,
-    RepulsionParams, SimulationParams,
+    BodyKind, BodySpec, FrictionPair, Keyframe, Material, Motion, ObstacleSpec, OutputParams, PinSpec,
+    Region, RepulsionParams, SimulationParams,
 };
 use bowknot::shapes::{
     Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Lathe, Ribbon, Sheet, Tube, Wedge,
@@ -400,6 +400,14 @@ fn page() -> String {
     page.head(false);
     page.rows("ParticleMaterial", &ParticleMaterial::default(), None, all);
 
+    page.section(
+        "The materials",
+        "Their numbers, with four digits, as far as those of a kind differ; all others are the defaults above.",
+    );
+    for kind in [BodyKind::Cloth, BodyKind::Solid, BodyKind::Strands, BodyKind::Particles] {
+        page.text += &shipped_materials(kind);
+    }
+
     page.section("[[obstacle]]", "Something that bodies collide with and that moves only as prescribed.");
     page.head(false);
     page.rows("ObstacleSpec", &ObstacleSpec::default(), None, all);
@@ -521,6 +529,42 @@ fn collect_differences(path: &str, of: &Table, other: &Table, differences: &mut 
             (of, value) if of != Some(value) => differences.push(format!("`{path}{key} = {value}`")),
             _ => {}
         }
+    }
+}
+
+/// A row per material of a kind: the numbers in which they differ.
+fn shipped_materials(kind: BodyKind) -> String {
+    let numbers = |name: &&str| -> toml::Table {
+        let material = Material::named(kind, name).expect("a material with this name");
+        let toml::Value::Table(table) = toml::Value::try_from(material).expect("numbers") else {
+            panic!("{name} is no table")
+        };
+        table
+    };
+    let tables: Vec<toml::Table> = kind.materials().iter().map(numbers).collect();
+    let mut keys: Vec<&String> = tables.iter().flat_map(toml::Table::keys).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    keys.retain(|key| tables.iter().any(|table| table.get(*key) != tables[0].get(*key)));
+    let header: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
+    let mut text =
+        format!("\n| {} | {} |\n|---|{}\n", kind.name(), header.join(" | "), "--:|".repeat(keys.len()));
+    for (name, table) in kind.materials().iter().zip(&tables) {
+        let cells: Vec<String> =
+            keys.iter().map(|key| table.get(*key).map_or_else(String::new, cell)).collect();
+        text += &format!("| `{name}` | {} |\n", cells.join(" | "));
+    }
+    text
+}
+
+/// A number with four digits; others as TOML writes them.
+fn cell(value: &toml::Value) -> String {
+    match value {
+        toml::Value::Float(number) => {
+            let rounded: f64 = format!("{number:.3e}").parse().expect("a number");
+            format!("{rounded:?}")
+        }
+        other => other.to_string(),
     }
 }
 

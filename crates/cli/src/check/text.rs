@@ -1,7 +1,7 @@
 //! The report in words.
 
 use crate::args::CheckOptions;
-use bowknot::judging::JudgingReport;
+use bowknot::judging::{FrameVerdict, JudgingReport};
 use bowknot_errors::counted;
 
 /// States whose findings are printed; the others are counted.
@@ -14,7 +14,8 @@ pub fn of(report: &JudgingReport, options: &CheckOptions) -> String {
     let mut lines = Vec::new();
     let found: Vec<_> = report.files.iter().filter(|state| !state.findings.is_empty()).collect();
     for state in found.iter().take(STATES) {
-        lines.extend(state.findings.iter().map(|finding| format!("{}: {finding}", state.file)));
+        let place = format!("{}{}", state.file, time_of(state));
+        lines.extend(state.findings.iter().map(|finding| format!("{place}: {finding}")));
     }
     if found.len() > STATES {
         let rest = counted(found.len() - STATES, "more state", "more states");
@@ -23,25 +24,66 @@ pub fn of(report: &JudgingReport, options: &CheckOptions) -> String {
     if report.states > 1 && !report.pairs.is_empty() {
         lines.extend(pairs(report));
     }
+    if !report.hint_pairs.is_empty() {
+        lines.extend(hints(report));
+    }
+    lines.extend(report.inside.iter().take(PAIRS).map(|pair| {
+        let states = counted(pair.states, "state", "states");
+        let first = with_time(report, &pair.first);
+        format!(
+            "{} lies inside of {}, which is closed, in {states}, the first {first}: no intersection, but a hint",
+            pair.part, pair.within
+        )
+    }));
     lines.push(summary(report, options.min_distance));
     lines.join("\n")
 }
 
+/// The time of a state, if its file knows it, and its time code.
+fn time_of(state: &FrameVerdict) -> String {
+    let Some(time) = state.time_s else { return String::new() };
+    let code = state.time_code.map_or_else(String::new, |code| format!(", time code {code}"));
+    format!(" ({time:.6} s{code})")
+}
+
+/// A state that a table names, with its time.
+fn with_time(report: &JudgingReport, file: &str) -> String {
+    let time = report.files.iter().find(|state| state.file == file).map(time_of);
+    format!("{file}{}", time.unwrap_or_default())
+}
+
 fn pairs(report: &JudgingReport) -> Vec<String> {
-    let mut rows = vec![["parts", "states", "most pairs", "in", "deepest [m]", "first"].map(str::to_owned)];
-    for pair in report.pairs.iter().take(PAIRS) {
-        let [a, b] = &pair.parts;
-        rows.push([
-            if a == b { format!("{a} and itself") } else { format!("{a} and {b}") },
+    let rows = report.pairs.iter().take(PAIRS).map(|pair| {
+        [
+            parts(&pair.parts),
             pair.states.to_string(),
             pair.most.to_string(),
-            pair.worst.clone(),
+            with_time(report, &pair.worst),
             format!("{:.1e}", pair.depth_m),
-            pair.first.clone(),
-        ]);
-    }
+            with_time(report, &pair.first),
+        ]
+    });
+    let header = ["parts", "states", "most pairs", "in", "deepest [m]", "first"].map(str::to_owned);
+    table(std::iter::once(header).chain(rows).collect(), report.pairs.len())
+}
+
+fn hints(report: &JudgingReport) -> Vec<String> {
+    let rows = report.hint_pairs.iter().take(PAIRS).map(|pair| {
+        let [worst, first] = [&pair.worst, &pair.first].map(|file| with_time(report, file));
+        [parts(&pair.parts), pair.paths.to_string(), pair.most.to_string(), worst, first]
+    });
+    let header = ["meet between frames (hints)", "paths", "most pairs", "to", "first"].map(str::to_owned);
+    table(std::iter::once(header).chain(rows).collect(), report.hint_pairs.len())
+}
+
+fn parts([a, b]: &[String; 2]) -> String {
+    if a == b { format!("{a} and itself") } else { format!("{a} and {b}") }
+}
+
+/// Rows with their columns below each other, of so many pairs in all.
+fn table<const N: usize>(rows: Vec<[String; N]>, pairs: usize) -> Vec<String> {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: [usize; 6] = std::array::from_fn(width);
+    let widths: [usize; N] = std::array::from_fn(width);
     let mut lines: Vec<String> = rows
         .iter()
         .map(|row| {
@@ -49,8 +91,8 @@ fn pairs(report: &JudgingReport) -> Vec<String> {
             cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
         })
         .collect();
-    if report.pairs.len() > PAIRS {
-        lines.push(format!("and {}", counted(report.pairs.len() - PAIRS, "more pair", "more pairs")));
+    if pairs > PAIRS {
+        lines.push(format!("and {}", counted(pairs - PAIRS, "more pair", "more pairs")));
     }
     lines
 }

@@ -224,6 +224,105 @@ fn frames_of_an_animation_and_the_ways_between_them() {
     assert_eq!((&report["path_hits"], &report["paths"]), (&0.into(), &2.into()), "{report}");
 }
 
+/// A triangle whose lowest corner is at each of these heights, over one at rest.
+fn falling(heights: &[f64]) -> String {
+    let samples: Vec<String> = heights
+        .iter()
+        .enumerate()
+        .map(|(k, z)| {
+            format!("{}: [(0.2, 0.2, {z}), (0.3, 0.2, {}), (5, 5, {})]", 10 + 5 * k, z + 2.0, z + 1.0)
+        })
+        .collect();
+    let mesh = |name: &str, points: &str| {
+        format!(
+            "def Mesh \"{name}\" {{ int[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\n\
+             uniform token subdivisionScheme = \"none\"\n{points} }}\n"
+        )
+    };
+    format!(
+        "#usda 1.0\n( timeCodesPerSecond = 10 )\n{}{}",
+        mesh("still", "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]"),
+        mesh("moving", &format!("point3f[] points.timeSamples = {{ {} }}", samples.join(", ")))
+    )
+}
+
+/// Time codes, times, and elements by their part are those of the file.
+#[test]
+fn findings_have_the_numbers_of_the_file() {
+    let place = Place::new();
+    place.write("a.usda", falling(&[2.0, 1.0, -0.25]));
+    let ended = place.run("check a.usda");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    assert!(ended.stdout.contains("a.usda[2] (2.000000 s, time code 20): edge"), "{ended:#?}");
+    assert!(
+        ended
+            .stdout
+            .contains("; by its part: edge [0, 2] of moving and triangle 0 (vertices [0, 1, 2]) of still"),
+        "{ended:#?}"
+    );
+    let report = place.run("check a.usda --json").json();
+    let state = &report["files"][2];
+    assert_eq!((&state["time_code"], &state["time_s"]), (&20.0.into(), &2.0.into()), "{report}");
+    let [edge, triangle] = [0, 1].map(|side| &state["elements"][0][side]);
+    assert_eq!(
+        (&edge["kind"], &edge["part"], &edge["number"]),
+        (&"edge".into(), &"moving".into(), &serde_json::Value::Null),
+        "{report}"
+    );
+    assert_eq!((&triangle["part"], &triangle["number"]), (&"still".into(), &0.into()), "{report}");
+    assert_eq!(triangle["vertices"], serde_json::json!([0, 1, 2]), "{report}");
+    // Hints by pairs of parts.
+    place.write("b.usda", falling(&[2.0, 1.0, -4.0, 1.0]));
+    let ended = place.run("check b.usda --paths").ok();
+    let header = ended
+        .stdout
+        .lines()
+        .position(|line| line.starts_with("meet between frames (hints)"))
+        .expect("a table");
+    let row = ended.stdout.lines().nth(header + 1).expect("a row");
+    assert!(
+        row.starts_with("still and moving") && row.ends_with("b.usda[2] (2.000000 s, time code 20)"),
+        "{ended:#?}"
+    );
+    let report = place.run("check b.usda --paths --json").ok().json();
+    let [pair] = report["hint_pairs"].as_array().expect("pairs").as_slice() else { panic!("{report}") };
+    assert_eq!((&pair["paths"], &pair["first"]), (&2.into(), &"b.usda[2]".into()), "{report}");
+    let all: u64 = report["files"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|state| state["hint_pairs"][0]["hints"].as_u64())
+        .sum();
+    assert_eq!(report["hints_between_frames"], all, "{report}");
+}
+
+#[test]
+fn what_lies_inside_of_a_closed_part_is_a_hint() {
+    let place = Place::new();
+    let ball = "o ball\nv 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    let sheet =
+        |x: f64| format!("{ball}o sheet\nv {x} 0.5 0.5\nv {} 0.5 0.5\nv {x} 0.7 0.5\nf 5 6 7\n", x + 0.2);
+    place.write("in.obj", sheet(0.5));
+    let ended = place.run("check in.obj").ok();
+    assert!(
+        ended.stdout.contains("sheet lies inside of ball, which is closed, in 1 state, the first in.obj"),
+        "{ended:#?}"
+    );
+    let report = place.run("check in.obj --json").ok().json();
+    assert_eq!(report["inside"][0]["within"], "ball", "{report}");
+    // Beside it, within its box; through its surface; inside of one with a hole.
+    place.write("beside.obj", sheet(3.6));
+    place.write("through.obj", sheet(-0.1));
+    place.write("open.obj", sheet(0.5).replace("f 3 1 4\n", ""));
+    for name in ["beside", "through", "open"] {
+        let ended = place.run(&format!("check {name}.obj"));
+        assert!(
+            !ended.stdout.contains("lies inside") && (ended.code == 1) == (name == "through"),
+            "{ended:#?}"
+        );
+    }
+}
+
 #[test]
 fn files_that_are_parts_of_one_scene() {
     let place = Place::new();

@@ -63,9 +63,26 @@ pub struct ElementMatrix<'a> {
 }
 
 impl<'a> ElementMatrix<'a> {
-    /// A matrix for an element of `count` vertices over its blocks, row by row.
-    pub(super) fn new(count: usize, blocks: &'a mut [Matrix3<f64>]) -> Self {
-        debug_assert_eq!(blocks.len(), count * count, "one block per pair of vertices");
+    /// A matrix for an element of `count` vertices over its blocks, row by row: an element that is made of another
+    /// one, or a test of one, asks it for its Hessian with this.
+    ///
+    /// ```
+    /// use bowknot_dynamics::ElementMatrix;
+    /// use bowknot_dynamics::geometry::nalgebra::Matrix3;
+    ///
+    /// let mut blocks = [Matrix3::zeros(); 4];
+    /// ElementMatrix::new(2, &mut blocks).add(0, 1, &Matrix3::from_fn(|row, column| (3 * row + column) as f64));
+    /// assert_eq!((blocks[1][(0, 2)], blocks[2][(2, 0)]), (2.0, 2.0));
+    /// ```
+    ///
+    /// # Panics
+    /// There is not one block per pair of vertices.
+    pub fn new(count: usize, blocks: &'a mut [Matrix3<f64>]) -> Self {
+        assert_eq!(
+            blocks.len(),
+            count * count,
+            "an element of {count} vertices has one block per pair of them"
+        );
         Self { count, blocks }
     }
 

@@ -128,6 +128,14 @@ impl FrameSource {
         }
     }
 
+    /// Time code of each frame, of a USD stage in which something moves; `None` for other files.
+    pub fn codes(&self) -> Option<&[f64]> {
+        match &self.store {
+            Store::Animation(animation) => animation.codes(),
+            _ => None,
+        }
+    }
+
     /// Names of the parts that [`Mesh::body`] counts: prims of a USD stage, nodes of a glTF scene, files of a
     /// folder of point caches. None for frames that are files of their own, whose meshes have the names, and
     /// for archives.

@@ -64,6 +64,10 @@ impl Animation for Together {
         self.sources[self.moving].times()
     }
 
+    fn codes(&self) -> Option<&[f64]> {
+        self.sources[self.moving].codes()
+    }
+
     fn names(&self) -> &[String] {
         // The meshes have them.
         &[]

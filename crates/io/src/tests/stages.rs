@@ -168,11 +168,10 @@ fn one_part_of_a_stage_is_chosen_by_name_or_path() {
     assert_eq!((cloth.positions.len(), cloth.surface.as_ref().map(Surface::len)), (5, Some(2)));
     let hand = part("hand").unwrap();
     assert_eq!((hand.positions[0], &hand.triangles[..]), (Point::new(2.0, 0.0, 20.0), &[[0, 2, 1]][..]));
-    assert_eq!((hand.body, hand.names, hand.obstacle), (
-        Some(vec![0; 3]),
-        vec!["hand".to_owned()],
-        Some(vec![true; 3])
-    ));
+    assert_eq!(
+        (hand.body, hand.names, hand.obstacle),
+        (Some(vec![0; 3]), vec!["hand".to_owned()], Some(vec![true; 3]))
+    );
     // All below a path.
     assert_eq!(part("/World/arm").unwrap().triangles, [[0, 2, 1]]);
     assert_eq!(part("/World/").unwrap(), {
@@ -235,11 +234,12 @@ fn subsets_of_a_stage_are_groups() {
         [("back", &[0, 1, 2]), ("edge", &[0, 1, 3]), ("front", &[1, 2, 3, 4]), ("hem", &[0, 4])];
     assert_eq!(groups, expected);
     // Of tetrahedra, and of one part of two.
-    let tets = "def TetMesh \"t\" {\npoint3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)]\n\
+    let tets =
+        "def TetMesh \"t\" {\npoint3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)]\n\
                 int4[] tetVertexIndices = [(0, 1, 2, 3), (1, 2, 3, 4)]\n"
-        .to_owned()
-        + &subset("top", "uniform token elementType = \"tetrahedron\"\nint[] indices = [1]")
-        + "}\n";
+            .to_owned()
+            + &subset("top", "uniform token elementType = \"tetrahedron\"\nint[] indices = [1]")
+            + "}\n";
     let path = write(&folder, "b.usda", format!("#usda 1.0\n{}{tets}", mesh("m")));
     let both = read_mesh(&path, &Import::default()).unwrap();
     assert_eq!(both.groups.get("top"), Some(&[6, 7, 8, 9][..]));

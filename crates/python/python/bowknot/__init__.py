@@ -6,7 +6,7 @@ make the folders and pages of the command, `sweep` many runs and a table of them
 
 Lengths are in m, masses in kg, times in s; z is up. Vertices are arrays of float64 of shape (n, 3), triangles arrays of
 integers of shape (m, 3). Where a mesh is taken, objects of meshio, trimesh and pyvista are taken as well. Warnings go
-to the logger ``bowknot``.
+to the logger ``bowknot``; what makes results doubtful is a `BowknotWarning`.
 """
 
 from __future__ import annotations

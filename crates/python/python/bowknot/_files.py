@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable
 from contextlib import ExitStack
 from types import SimpleNamespace
+from typing import Any
 
 from . import _native
 from ._call import call
@@ -21,8 +22,10 @@ class FilesReport(Info):
 
     ``states`` and ``intersecting_states`` count frames, ``intersections`` the pairs of elements that intersect in all
     of them, ``hints_between_frames`` those that meet on the straight way between frames. ``pairs`` has the parts that
-    intersect: in how many frames, the first, the one with the most pairs, the deepest. ``files`` has a verdict for each
-    frame, with ``pairs`` and ``findings`` of its own.
+    intersect: in how many frames, the first, the one with the most pairs, the deepest; ``hint_pairs`` the same of hints,
+    ``inside`` the parts that lie within closed ones without meeting them. ``files`` has a verdict for each frame, with
+    ``pairs``, ``findings``, ``time_s`` and the ``time_code`` of USD; ``elements`` has the elements of the findings by their
+    part and their numbers within it.
     """
 
     __slots__ = ()
@@ -32,8 +35,18 @@ class FilesReport(Info):
 
     @property
     def findings(self) -> list[str]:
-        """The first intersections of each frame in words."""
-        return [f"{frame['file']}: {finding}" for frame in self["files"] for finding in frame["findings"]]
+        """The first intersections of each frame in words, with its time where the file knows it."""
+        return [f"{_named(frame)}: {finding}" for frame in self["files"] for finding in frame["findings"]]
+
+    @property
+    def hint_pairs(self) -> list[dict[str, Any]]:
+        """The pairs of parts that meet between frames; empty if none do or the ways were not judged."""
+        return self._all().get("hint_pairs", [])
+
+    @property
+    def inside(self) -> list[dict[str, Any]]:
+        """The parts that lie inside of others, whose surfaces are closed, without meeting them."""
+        return self._all().get("inside", [])
 
     @property
     def intersection_count(self) -> int:
@@ -116,6 +129,14 @@ def check_files(
         if text != path:
             report = report.replace(json.dumps(text)[1:-1], json.dumps(path)[1:-1])
     return FilesReport(report)
+
+
+def _named(frame: dict[str, Any]) -> str:
+    """A frame in words."""
+    if "time_s" not in frame:
+        return str(frame["file"])
+    code = f", time code {frame['time_code']:g}" if "time_code" in frame else ""
+    return f"{frame['file']} ({frame['time_s']:g} s{code})"
 
 
 def _names(names: str | Iterable[str]) -> list[str]:

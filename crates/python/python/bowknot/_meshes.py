@@ -39,6 +39,12 @@ class Mesh:
         Vertices that are particles.
     groups : dict of str to ndarray of uint32
         Vertices of each group of a mesh file, by name: ``scene.add_pin("cape", mesh.groups["hem"])``.
+    bodies : ndarray of uint32, shape (n,), or empty
+        The body or part of each vertex, if the file has some.
+    names : list of str
+        Names of the bodies, by their numbers, if the file has some.
+    obstacles : ndarray of bool, shape (n,), or empty
+        The vertices of obstacles, in a frame of a run.
     """
 
     vertices: NDArray[np.float64]
@@ -47,6 +53,9 @@ class Mesh:
     edges: NDArray[np.uint32]
     particles: NDArray[np.uint32]
     groups: dict[str, NDArray[np.uint32]] = field(default_factory=dict)
+    bodies: NDArray[np.uint32] = field(default_factory=lambda: np.zeros(0, np.uint32))
+    names: list[str] = field(default_factory=list)
+    obstacles: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
 
     def __repr__(self) -> str:
         counts = [

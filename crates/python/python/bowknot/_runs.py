@@ -11,11 +11,15 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-from . import _native
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native, _toml
 from ._call import call, logger
 from ._errors import BowknotWarning, InputError
 from ._folders import replaced
 from ._meshes import Mesh, read_mesh
+from ._pictures import render
 from ._progress import Callback, Follower, callback_of
 from ._scene import Scene
 
@@ -75,6 +79,42 @@ class Run:
             raise InputError(f"frame {frame} is not in {frames}; it holds {there[0]} to {there[-1]}")
         return read_mesh(path)
 
+    def render(self, frame: int | None = None, **options: Any) -> NDArray[np.uint8]:
+        """Draws a frame, by default the last one; see `bowknot.render`."""
+        return render(self, frame=frame, **options)
+
+    def _frame(self, frame: int | None) -> tuple[Mesh, NDArray[np.float64]]:
+        """A frame without the squares of half-spaces, and these as planes. Those that are not there have no area."""
+        if frame is None:
+            there = [int(path.stem) for path in (self.folder / "frames").glob("*.ply") if path.stem.isdigit()]
+            frame = max(there, default=0)
+        mesh = self.mesh(frame)
+        obstacles = _toml.read(self.scene.to_toml(short=False)).get("obstacle", [])
+        squares = sum(_type(obstacle.get("shape")) == "half-space" for obstacle in obstacles)
+        kept = len(mesh.vertices) - 4 * squares
+        corners = mesh.vertices[kept:].reshape(squares, 4, 3)
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0])
+        lengths = np.linalg.norm(normals, axis=1)
+        there = lengths > 0.0
+        normals = normals[there] / lengths[there, None]
+        offsets = np.einsum("kc,kc->k", normals, corners[there, 0])
+
+        def elements(rows: NDArray[np.uint32]) -> NDArray[np.uint32]:
+            is_kept = rows < kept if rows.ndim == 1 else (rows < kept).all(axis=1)
+            return np.ascontiguousarray(rows[is_kept])
+
+        without = Mesh(
+            np.ascontiguousarray(mesh.vertices[:kept]),
+            elements(mesh.faces),
+            elements(mesh.tets),
+            elements(mesh.edges),
+            elements(mesh.particles),
+            bodies=mesh.bodies[:kept],
+            names=mesh.names,
+            obstacles=mesh.obstacles[:kept],
+        )
+        return without, np.ascontiguousarray(np.column_stack([normals, offsets]))
+
     def report(self, out: str | os.PathLike[str] | None = None, **options: Any) -> Path:
         """Writes its page; see `bowknot.report`."""
         return report(self.folder, out, **options)
@@ -87,6 +127,10 @@ class Run:
             page = report(self.folder, Path(folder) / "report.html", max_bytes=_NOTEBOOK_BYTES)
             content = html.escape(page.read_text(encoding="utf-8"))
         return f'<iframe srcdoc="{content}" width="100%" height="640" style="border: 0"></iframe>'
+
+
+def _type(shape: Any) -> Any:
+    return shape.get("type") if isinstance(shape, dict) else shape
 
 
 def run(

@@ -312,6 +312,10 @@ class Simulator:
         """
         return CheckReport(*call(self._native.check, count_of("limit", limit), bool(distance)))
 
+    def mass_of(self, name: str) -> float:
+        """Mass of a body [kg]: what its material and mesh make. Obstacles have none, which is 0."""
+        return call(self._native.mass_of, name)
+
     # Forces
 
     def contacts(self) -> Contacts:

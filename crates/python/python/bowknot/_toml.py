@@ -5,12 +5,23 @@ from __future__ import annotations
 import json
 import math
 import os
+import sys
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from ._errors import InputError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+def read(text: str) -> dict[str, Any]:
+    """The tables of a text of TOML; a `ValueError` if it is none."""
+    return tomllib.loads(text)
 
 
 def value(key: str, given: Any) -> str:

@@ -81,6 +81,18 @@ impl Simulator {
         })
     }
 
+    /// Mass of a body [kg]; obstacles and half-spaces have none, which is 0.
+    ///
+    /// # Errors
+    /// No such body or obstacle.
+    pub fn mass_of(&self, name: &str) -> Result<f64, DriveError> {
+        self.require(name)?;
+        let body = self.world.index_of(name).map(|index| &self.world.bodies[index]);
+        let masses = self.dynamics_model().masses();
+        let body = body.filter(|body| body.kind.is_some());
+        Ok(body.map_or(0.0, |body| body.all_vertices().map(|v| masses[v as usize]).sum()))
+    }
+
     /// A name that nothing has yet.
     fn new_name(&self, name: &str) -> Result<String, DriveError> {
         if self.world.names().any(|other| other == name) {

@@ -72,11 +72,16 @@ fn of_pair(world: &World, body: u32, other: Other) -> Option<String> {
             let depth = -heights.fold(f64::INFINITY, f64::min);
             let [x, y, z] = <[f64; 3]>::from(half_space.normal).map(|c| (c * 1e3).round() / 1e3 + 0.0);
             let ground = world.half_space_names.get(plane as usize).map_or("", String::as_str);
-            Some(format!(
-                "{name} lies up to {} below half-space {ground}: move {name} by more than that along ({x}, \
-                 {y}, {z}), by `translate`",
-                length(depth)
-            ))
+            let along = format!("along ({x}, {y}, {z}), by `translate`");
+            // What rounding cannot tell from a vertex on the plane counts as one.
+            Some(if depth <= LEAST_DEPTH {
+                format!("{name} touches half-space {ground}, which counts: move {name} away from it {along}")
+            } else {
+                let depth = length(depth);
+                format!(
+                    "{name} lies up to {depth} below half-space {ground}: move {name} by more than that {along}"
+                )
+            })
         }
         Other::Body(other) => {
             let pair = Pair::new(world, body, other);
@@ -103,6 +108,9 @@ fn positions(world: &World, body: u32) -> &[Point] {
     let vertices = &world.bodies[body as usize].vertices;
     &world.positions[vertices.start as usize..vertices.end as usize]
 }
+
+/// Depths from here on are told [m]; smaller ones are those of rounding.
+const LEAST_DEPTH: f64 = 1e-9;
 
 /// A length that is a little larger, with two digits, in m.
 fn length(meters: f64) -> String {
@@ -314,6 +322,13 @@ mod tests {
             found,
             ["sheet lies up to 0.013 m below half-space ground: move sheet by more than that along (0, 0, \
                  1), by `translate`"]
+        );
+        // On the plane.
+        let found = advice_of(&(sheet(0.0) + ground));
+        assert_eq!(
+            found,
+            ["sheet touches half-space ground, which counts: move sheet away from it along (0, 0, 1), by \
+                 `translate`"]
         );
     }
 

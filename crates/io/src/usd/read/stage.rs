@@ -188,6 +188,10 @@ impl Animation for Stage {
         self.times.as_deref()
     }
 
+    fn codes(&self) -> Option<&[f64]> {
+        self.times.as_ref().map(|_| &self.codes[..])
+    }
+
     fn names(&self) -> &[String] {
         &self.mesh.names
     }

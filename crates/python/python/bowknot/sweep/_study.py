@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import os
-import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,12 +13,8 @@ from typing import Any
 from .._errors import InputError
 from .._meshes import is_path
 from .._scene import Scene
+from .._toml import read as parsed
 from ._design import Range, cases
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 #: Endings of tables.
 TABLES = (".parquet", ".csv", ".jsonl")
@@ -107,11 +102,6 @@ def read(study: Mapping[str, Any] | str | os.PathLike[str], out: str | os.PathLi
     if "://" not in given["out"]:
         given["out"] = os.path.abspath(given["out"])
     return Study(**given, folder=folder)
-
-
-def parsed(text: str) -> dict[str, Any]:
-    """The content of TOML; a `ValueError` if it is none."""
-    return tomllib.loads(text)
 
 
 def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
