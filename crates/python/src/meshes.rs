@@ -192,6 +192,10 @@ pub fn read_mesh<'py>(
         if let Some(faults) = mesh.triangulate().describe() {
             tracing::warn!("{}: {faults}", path.display());
         }
+        // Objects of an OBJ are parts, too.
+        if mesh.body.is_none() {
+            mesh.name_parts(&path.file_stem().unwrap_or_default().to_string_lossy());
+        }
         PyResult::Ok(mesh)
     })?;
     let mesh = read.finish()??;

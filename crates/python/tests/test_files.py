@@ -105,7 +105,7 @@ def test_binary_usd(tmp_path: Path) -> None:
     assert report.files[2]["file"].startswith(str(tmp_path / "two.usdc"))
     assert (report.files[2]["time_code"], report.files[2]["time_s"]) == (2.0, 2.0 / 24.0)
     assert report.findings[0].startswith(f"{tmp_path / 'two.usdc'}[2] (0.0833333 s, time code 2): edge")
-    edge, triangle = report.files[2]["elements"][0]
+    edge, triangle = report.files[2]["elements"][1]
     assert (edge["part"], edge["vertices"], edge["number"]) == ("moving", [0, 1], None)
     assert (triangle["part"], triangle["number"], triangle["vertices"]) == ("still", 0, [0, 1, 2])
     assert report.hint_pairs == report.inside == []

@@ -143,6 +143,7 @@ def test_a_sweep_that_is_interrupted_goes_on(tmp_path, linux, whole, how):
     assert "pending" in [row["status"] for row in rows] and len(rows) == 4
     assert list(out.glob("runs/*/checkpoint/state.npz"))
     done = subprocess.run([*command, "--quiet"], capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0 and done.stdout.strip() == str(out / "table.jsonl") and not done.stderr
+    assert done.returncode == 0 and done.stdout.strip() == str(out / "table.jsonl")
+    assert done.stderr.startswith("warning: run 1 (body.sheet.friction = 0.1) and 2 other runs: body[0].friction"), done
     rows = [json.loads(line) for line in (out / "table.jsonl").read_text().splitlines()]
     assert without_costs(rows) == without_costs(whole.rows)

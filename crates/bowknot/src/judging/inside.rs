@@ -37,7 +37,7 @@ struct Component {
 /// Parts that intersect are left out.
 pub(super) fn inside(mesh: &Mesh, positions: &[Point], intersecting: &[BodyPair]) -> BTreeSet<[u32; 2]> {
     let mut found = BTreeSet::new();
-    let Some(body) = &mesh.body else { return found };
+    let Some(body) = mesh.body.as_ref().filter(|_| mesh.names.len() > 1) else { return found };
     let components = components(mesh, body, positions);
     let parts: BTreeSet<u32> = components.iter().map(|component| component.part).collect();
     if parts.len() < 2 {

@@ -257,13 +257,13 @@ fn findings_have_the_numbers_of_the_file() {
     assert!(
         ended
             .stdout
-            .contains("; by its part: edge [0, 2] of moving and triangle 0 (vertices [0, 1, 2]) of still"),
+            .contains("; by its part: edge [0, 1] of moving and triangle 0 (vertices [0, 1, 2]) of still"),
         "{ended:#?}"
     );
     let report = place.run("check a.usda --json").json();
     let state = &report["files"][2];
     assert_eq!((&state["time_code"], &state["time_s"]), (&20.0.into(), &2.0.into()), "{report}");
-    let [edge, triangle] = [0, 1].map(|side| &state["elements"][0][side]);
+    let [edge, triangle] = [0, 1].map(|side| &state["elements"][1][side]);
     assert_eq!(
         (&edge["kind"], &edge["part"], &edge["number"]),
         (&"edge".into(), &"moving".into(), &serde_json::Value::Null),

@@ -40,9 +40,9 @@ class Mesh:
     groups : dict of str to ndarray of uint32
         Vertices of each group of a mesh file, by name: ``scene.add_pin("cape", mesh.groups["hem"])``.
     bodies : ndarray of uint32, shape (n,), or empty
-        The body or part of each vertex, if the file has some.
+        The body or part of each vertex of a mesh file.
     names : list of str
-        Names of the bodies, by their numbers, if the file has some.
+        Names of the bodies, by their numbers; that of the file, if it names no parts.
     obstacles : ndarray of bool, shape (n,), or empty
         The vertices of obstacles, in a frame of a run.
     """

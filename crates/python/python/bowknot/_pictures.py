@@ -174,8 +174,8 @@ def _colors(colors: Any, drawn: SimpleNamespace) -> NDArray[np.uint8]:
     body = drawn.body if len(drawn.body) == count else np.zeros(count, np.uint32)
     obstacle = drawn.obstacle if len(drawn.obstacle) == count else np.zeros(count, np.bool_)
     numbers, places = np.unique(body, return_inverse=True)
-    own = np.array([_native.body_color(int(number)) for number in numbers], np.uint8).reshape(-1, 3)[places.ravel()]
-    own[obstacle] = _native.body_color(None)
+    own = np.array([list(_native.body_color(int(number))) for number in numbers], np.uint8)[places.ravel()]
+    own[obstacle] = list(_native.body_color(None))
     by_body = colors.items() if isinstance(colors, Mapping) else enumerate(colors)
     for key, color in by_body:
         if isinstance(key, str):
