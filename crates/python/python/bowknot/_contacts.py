@@ -55,8 +55,7 @@ class Contacts:
         self, body: int, about: Any = (0.0, 0.0, 0.0), *, by: int | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Force [N] and torque [N m] about a point that contacts exert on a side, by its number in ``bodies``: all of
-        them, or those with the side ``by`` alone. By itself (``by=body``) a body exerts none in sum but rounding and the
-        torque of the gaps."""
+        them, or those with the side ``by`` alone. On itself (``by=body``) a body exerts no force in sum."""
         places = np.concatenate([self.points_a, self.points_b]) - _arrays.vector("about", about)
         forces = np.concatenate([self.forces, -self.forces])
         on_it = np.concatenate([self.bodies[:, 0], self.bodies[:, 1]]) == body

@@ -22,10 +22,10 @@ class FilesReport(Info):
 
     ``states`` and ``intersecting_states`` count frames, ``intersections`` the pairs of elements that intersect in all
     of them, ``hints_between_frames`` those that meet on the straight way between frames. ``pairs`` has the parts that
-    intersect: in how many frames, the first, the one with the most pairs, the deepest; ``hint_pairs`` the same of hints,
-    ``inside`` the parts that lie within closed ones without meeting them. ``files`` has a verdict for each frame, with
-    ``pairs``, ``findings``, ``time_s`` and the ``time_code`` of USD; ``elements`` has the elements of the findings by their
-    part and their numbers within it.
+    intersect: in how many frames, the first, the one with the most pairs, the deepest; ``hint_pairs`` the same of
+    hints, ``inside`` the parts that lie within closed ones without meeting them. ``files`` has a verdict for each
+    frame, with ``pairs``, ``findings``, ``time_s`` and the ``time_code`` of USD; ``elements`` has the elements of the
+    findings by their part and their numbers within it.
     """
 
     __slots__ = ()

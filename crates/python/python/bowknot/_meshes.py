@@ -180,9 +180,7 @@ def _three(points: Any) -> Any:
     return points
 
 
-def read_mesh(
-    path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0, part: str | None = None
-) -> Mesh:
+def read_mesh(path: str | os.PathLike[str], *, up: str = "z", scale: float = 1.0, part: str | None = None) -> Mesh:
     """Reads a mesh file: OBJ, PLY, STL, Gmsh (``.msh``), Medit (``.mesh``), TetGen, VTU, USD, glTF, ``.t``, ``.seg``.
 
     Parameters

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import inspect
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -337,12 +337,12 @@ class Resolver:
         return f"Resolver({self._count} vertices)"
 
 
-def _warn_of(edge: tuple[int, int], stretch: float) -> None:
+def _warn_of(edge: Sequence[int], stretch: float) -> None:
     text = (
         f"y: the target stretches the edge between vertices {edge[0]} and {edge[1]} to {stretch:.3g} times its rest "
         "length: the solver that computes targets most likely explodes. Results have no intersections, but no meaning "
-        "either. What helps: velocities from where calls end, (new - x) / dt; a smaller time step; softer springs or an "
-        "implicit solver; the same unit for rest, x and y. info.max_target_stretch has this ratio of each call."
+        "either. What helps: velocities from where calls end, (new - x) / dt; a smaller time step; softer springs or "
+        "an implicit solver; the same unit for rest, x and y. info.max_target_stretch has this ratio of each call."
     )
     warnings.warn(text, BowknotWarning, stacklevel=3)
 

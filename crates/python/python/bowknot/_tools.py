@@ -21,8 +21,8 @@ class CheckReport(Info):
     """What the judge says. It is true if nothing intersects.
 
     ``intersection_count`` counts all pairs, ``intersections`` has the first ones with their vertices, place and depth,
-    ``findings`` the same in words; ``body_pairs`` counts them by bodies, of which a half-space is None, with the deepest
-    of each [m]; ``min_distance_m`` is the smallest distance [m], None if there is no pair.
+    ``findings`` the same in words; ``body_pairs`` counts them by bodies, of which a half-space is None, with the
+    deepest of each [m]; ``min_distance_m`` is the smallest distance [m], None if there is no pair.
     """
 
     __slots__ = ("findings",)

@@ -41,7 +41,9 @@ class SweepResult:
         Runs and their warnings.
     """
 
-    def __init__(self, out: str, table: str, rows: list[dict[str, Any]], warnings: Iterable[tuple[str, str]] = ()) -> None:
+    def __init__(
+        self, out: str, table: str, rows: list[dict[str, Any]], warnings: Iterable[tuple[str, str]] = ()
+    ) -> None:
         #: The folder of the study, or its URL.
         self.out = out
         #: Path or URL of the table; empty if the sweep was of one part.

@@ -148,7 +148,7 @@ def _warnings() -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("always", BowknotWarning)
-            warnings.showwarning = keep
+            warnings.showwarning = keep  # type: ignore[assignment]
             yield found
     finally:
         logger.removeHandler(handler)
