@@ -222,6 +222,10 @@ fn scenes_that_we_write_come_back() {
         assert_eq!((mesh.strands, mesh.particles), (vec![[3, 4]], vec![5]));
         assert_eq!(mesh.obstacle, Some([vec![false; 6], vec![true; 4]].concat()));
     }
+    let lid = read_mesh_part(&path, &options.import, "lid").unwrap();
+    assert_eq!((lid.triangles, lid.strands), (vec![[0, 1, 3], [0, 3, 2]], Vec::new()));
+    let error = message(read_mesh_part(&path, &options.import, "box"));
+    assert!(error.contains("no part \"box\"; it has 2 \"cloths\", lid"), "{error}");
     // Nothing that moves, and nothing at all.
     write_glb(&path, &bodies[1..], 2, 0.5, |_, _| Ok(first[..4].to_vec())).unwrap();
     assert_eq!(FrameSource::open(&path).unwrap().times(), None);
