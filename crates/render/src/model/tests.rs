@@ -30,6 +30,14 @@ fn a_drawing_holds_everything_around_its_origin() {
     assert_eq!(drawing.balls[0].value, 0.0);
     assert_eq!(drawing.vertices[0].color[..3], palette::body(0));
     assert_eq!(drawing.vertices[3].color, [176, 178, 182, 0]);
+    // Colors of one's own leave the sides of a surface as they are.
+    let mut model = model;
+    let colors: Vec<[u8; 3]> = (0..7).map(|v| [v, 0, 1]).collect();
+    model.set_colors(&colors).unwrap();
+    let drawing = model.drawing(&Frame { positions: &points, values: &values }).unwrap();
+    assert_eq!(drawing.vertices[1].color, [1, 0, 1, 255]);
+    assert_eq!((drawing.vertices[3].color[3], drawing.balls[0].color[..3].to_vec()), (0, vec![6, 0, 1]));
+    assert!(model.set_colors(&colors[1..]).is_err());
 }
 
 #[test]
