@@ -19,11 +19,10 @@ impl PartsBuilder {
     /// more vertices than indices can count.
     #[must_use]
     pub fn add_bodies(&mut self, mut mesh: Mesh, name: String) -> Option<()> {
+        mesh.name_bodies(|number| format!("{name}, body {number}"));
         let Some(body) = mesh.body.take() else { return self.add(mesh, name) };
         let (start, first) = (self.body.len(), self.parts);
-        let count = body.iter().max().map_or(0, |last| last + 1);
         let mut names = std::mem::take(&mut mesh.names);
-        (names.len()..count as usize).for_each(|number| names.push(format!("{name}, body {number}")));
         self.add(mesh, name)?;
         self.body[start..].iter_mut().zip(body).for_each(|(part, body)| *part = first + body);
         self.mesh.names.truncate(first as usize);

@@ -8,6 +8,7 @@ use crate::import::Import;
 use crate::mesh::Mesh;
 use crate::read::read_mesh;
 use crate::still::{is_still, open_still};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Most parts that a message lists.
@@ -88,7 +89,7 @@ fn choose(mesh: &mut Mesh, paths: &[String], part: &str) -> Result<(), String> {
     let found = find(&mesh.names, paths, part)?;
     mesh.keep_parts(&found).map_err(|other| {
         let other = mesh.names.get(other).map_or("", String::as_str);
-        format!("an element joins part {part:?} to {other:?}, so that it is no part by itself")
+        format!("an element joins part {part:?} to {other:?}, so that it is no part by itself; leave out `part`, or separate them in the file")
     })
 }
 
@@ -112,8 +113,11 @@ fn find(names: &[String], paths: &[String], wanted: &str) -> Result<Vec<usize>, 
         [_] => Ok(found),
         several => {
             let paths: Vec<&str> = several.iter().map(|&k| path(k)).filter(|path| !path.is_empty()).collect();
-            let which = if paths.is_empty() { String::new() } else { format!(": {}", paths.join(", ")) };
-            Err(format!("{} parts are called {wanted:?}{which}; give the path of one", several.len()))
+            let remedy = match paths.is_empty() {
+                true => "; give them different names in the file".to_owned(),
+                false => format!(": {}; give the path of one", paths.join(", ")),
+            };
+            Err(format!("{} parts are called {wanted:?}{remedy}", several.len()))
         }
     }
 }
@@ -132,25 +136,38 @@ impl Mesh {
     /// Gives each vertex a part and each part a name, as the mesh's bodies: those that the file tells, else the
     /// objects of an OBJ. What has no name has that of the `whole`.
     pub fn name_parts(&mut self, whole: &str) {
-        if let Some(body) = &self.body {
-            let count = body.iter().max().map_or(0, |&last| last as usize + 1);
-            (self.names.len()..count).for_each(|number| self.names.push(format!("body {number}")));
-            return;
+        if self.body.is_some() {
+            return self.name_bodies(|number| format!("body {number}"));
         }
         let mut body = vec![0; self.positions.len()];
         let mut names: Vec<String> = Vec::new();
+        let mut known: HashMap<&str, u32> = HashMap::new();
         for polygon in self.surface.iter().flat_map(|surface| surface.polygons()) {
             let name = polygon.labels.object.as_deref().unwrap_or(whole);
-            let number = names.iter().position(|known| known == name).unwrap_or_else(|| {
+            let number = *known.entry(name).or_insert_with(|| {
                 names.push(name.to_owned());
-                names.len() - 1
+                names.len() as u32 - 1
             });
-            polygon.corners.iter().for_each(|corner| body[corner.vertex as usize] = number as u32);
+            polygon.corners.iter().for_each(|corner| body[corner.vertex as usize] = number);
         }
         if names.is_empty() {
             names.push(whole.to_owned());
         }
         (self.body, self.names) = (Some(body), names);
+    }
+
+    /// Names the bodies without a name by their numbers, and numbers them anew, in order, behind those that have one:
+    /// any numbers may stand in a file, and there must not be a name for each below the largest.
+    pub(crate) fn name_bodies(&mut self, name: impl Fn(u32) -> String) {
+        let Some(body) = &mut self.body else { return };
+        let named = self.names.len() as u32;
+        let mut nameless: Vec<u32> = body.iter().copied().filter(|&number| number >= named).collect();
+        nameless.sort_unstable();
+        nameless.dedup();
+        for number in body.iter_mut().filter(|number| **number >= named) {
+            *number = named + nameless.partition_point(|other| *other < *number) as u32;
+        }
+        self.names.extend(nameless.into_iter().map(name));
     }
 
     /// Keeps the vertices of some bodies, with what is made of them; they are numbered anew, in order.
@@ -159,9 +176,8 @@ impl Mesh {
     /// The number of another body, if an element has vertices of both. The mesh is then as it was.
     fn keep_parts(&mut self, bodies: &[usize]) -> Result<(), usize> {
         let Some(body) = &self.body else { return Ok(()) };
-        let new: Vec<Option<u32>> = (0..self.names.len())
-            .map(|number| bodies.iter().position(|kept| *kept == number).map(|index| index as u32))
-            .collect();
+        let mut new: Vec<Option<u32>> = vec![None; self.names.len()];
+        (0..).zip(bodies).for_each(|(index, &number)| new[number] = Some(index));
         let number = |v: u32| new[body[v as usize] as usize];
         let elements = self.triangles.iter().map(|t| &t[..]).chain(self.tets.iter().map(|t| &t[..]));
         for element in elements.chain(self.strands.iter().map(|e| &e[..])) {

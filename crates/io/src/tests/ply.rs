@@ -142,6 +142,27 @@ fn names_of_bodies_are_comments() {
 }
 
 #[test]
+fn bodies_may_have_any_numbers() {
+    let text = "ply\nformat ascii 1.0\ncomment body 0 a\nelement vertex 3\nproperty float x\nproperty float y\n\
+                property float z\nproperty int body\nend_header\n0 0 0 0\n1 0 0 2147483647\n2 0 0 7\n";
+    let folder = folder();
+    let path = write(&folder, "far.ply", text);
+    let part = read_mesh_part(&path, &Import::default(), "body 2147483647").unwrap();
+    assert_eq!((part.positions, part.particles), (vec![Point::new(1.0, 0.0, 0.0)], vec![0]));
+    let error = message(read_mesh_part(&path, &Import::default(), "b"));
+    assert!(error.ends_with("no part \"b\"; it has a, body 7, body 2147483647"), "{error}");
+    let sources = [&path, &path].map(|path| FrameSource::open(path).unwrap());
+    let both = FrameSource::together(sources.into()).unwrap().read(0).unwrap();
+    assert_eq!(both.body, Some(vec![0, 2, 1, 3, 5, 4]));
+    let names = ["a", "far, body 7", "far, body 2147483647"];
+    assert_eq!(both.names, [names, names].concat());
+    // A name that several have.
+    let path = write(&folder, "twice.ply", text.replace("body 0 a", "body 0 a\ncomment body 1 a"));
+    let error = message(read_mesh_part(&path, &Import::default(), "a"));
+    assert!(error.ends_with("2 parts are called \"a\"; give them different names in the file"), "{error}");
+}
+
+#[test]
 fn other_properties_of_vertices_are_groups() {
     let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                 property float nx\nproperty uchar red\nproperty uchar hem\nproperty list uchar int weights\n\

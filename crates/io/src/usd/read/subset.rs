@@ -24,7 +24,10 @@ pub(super) fn add_subsets(
             Some(Value::Array(place)) => arrays.read(place),
             _ => Ok(Vec::new()),
         };
-        let indices = numbers(subset, "indices")?;
+        // Each once: a short list may name a large face many times.
+        let mut indices = numbers(subset, "indices")?;
+        indices.sort_unstable_by(f64::total_cmp);
+        indices.dedup();
         let of_elements = |corners: Vec<f64>, ends: Vec<usize>| -> Option<Vec<f64>> {
             let element = |index: &f64| {
                 let index = whole(*index, ends.len())?;
