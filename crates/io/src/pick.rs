@@ -89,7 +89,10 @@ fn choose(mesh: &mut Mesh, paths: &[String], part: &str) -> Result<(), String> {
     let found = find(&mesh.names, paths, part)?;
     mesh.keep_parts(&found).map_err(|other| {
         let other = mesh.names.get(other).map_or("", String::as_str);
-        format!("an element joins part {part:?} to {other:?}, so that it is no part by itself; leave out `part`, or separate them in the file")
+        format!(
+            "an element joins part {part:?} to {other:?}, so that it is no part by itself; leave \
+             out `part`, or separate them in the file"
+        )
     })
 }
 
@@ -139,17 +142,27 @@ impl Mesh {
         if self.body.is_some() {
             return self.name_bodies(|number| format!("body {number}"));
         }
-        let mut body = vec![0; self.positions.len()];
+        let mut body = vec![u32::MAX; self.positions.len()];
         let mut names: Vec<String> = Vec::new();
         let mut known: HashMap<&str, u32> = HashMap::new();
-        for polygon in self.surface.iter().flat_map(|surface| surface.polygons()) {
-            let name = polygon.labels.object.as_deref().unwrap_or(whole);
-            let number = *known.entry(name).or_insert_with(|| {
-                names.push(name.to_owned());
+        let mut number_of = |name| {
+            *known.entry(name).or_insert_with(|| {
+                names.push(str::to_owned(name));
                 names.len() as u32 - 1
-            });
+            })
+        };
+        for polygon in self.surface.iter().flat_map(|surface| surface.polygons()) {
+            let number = number_of(polygon.labels.object.as_deref().unwrap_or(whole));
             polygon.corners.iter().for_each(|corner| body[corner.vertex as usize] = number);
         }
+        // Lines and points, which have no labels.
+        for &vertex in self.strands.iter().flatten().chain(&self.particles) {
+            if body[vertex as usize] == u32::MAX {
+                body[vertex as usize] = number_of(whole);
+            }
+        }
+        // Vertices of no element belong to the first part.
+        body.iter_mut().filter(|number| **number == u32::MAX).for_each(|number| *number = 0);
         if names.is_empty() {
             names.push(whole.to_owned());
         }

@@ -111,6 +111,7 @@ def test_frames_of_a_run_are_drawn(tmp_path):
         {"colors": [(0.5, 0.5, 0.5)]},
         {"colors": [(0, 0, 256)]},
         {"colors": {"cape": "#000000"}},
+        {"colors": {0.5: "#000000"}},
         {"size": (0, 0)},
         {"size": (10**6, 10**6)},
         {"size": (-1, 5)},

@@ -206,6 +206,11 @@ fn objects_of_other_files_are_parts() {
     assert_eq!(part.groups.get("hem"), Some(&[0, 1, 2][..]));
     let error = message(read_mesh_part(&path, &Import::default(), "c"));
     assert!(error.ends_with("two.obj: no part \"c\"; it has a, b"), "{error}");
+    // Lines and points are of no object.
+    let more = write(&folder, "more.obj", format!("{two}v 5 0 0\nv 6 0 0\nv 7 0 0\nl 7 8\np 9\n"));
+    assert_eq!(read_mesh_part(&more, &Import::default(), "a").unwrap().positions.len(), 3);
+    let rest = read_mesh_part(&more, &Import::default(), "more").unwrap();
+    assert_eq!((rest.triangles, rest.strands, rest.particles), (vec![], vec![[0, 1]], vec![2]));
     let sewn = write(&folder, "sewn.obj", two.replace("f 4 5 6", "f 3 4 5"));
     let error = message(read_mesh_part(&sewn, &Import::default(), "a"));
     assert!(error.contains("an element joins part \"a\" to \"b\""), "{error}");

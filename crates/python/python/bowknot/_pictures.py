@@ -182,6 +182,8 @@ def _colors(colors: Any, drawn: SimpleNamespace) -> NDArray[np.uint8]:
             if key not in drawn.names:
                 raise InputError(f"colors: no body {key!r}; there are {', '.join(drawn.names) or 'none with names'}")
             key = drawn.names.index(key)
+        elif not isinstance(key, (int, np.integer)):
+            raise InputError(f"colors: a body goes by its number or its name, not by {key!r}")
         own[body == int(key)] = _color(color)
     return np.ascontiguousarray(own)
 
