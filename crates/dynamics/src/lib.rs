@@ -70,5 +70,5 @@ pub use linear::springs::LinearSpring;
 pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};
 pub use model::DynamicsModel;
 pub use observe::{ElasticEnergies, Energies};
-pub use params::{DynamicsParams, Environment, HessianFilter, NewtonParams, PreconditionerKind};
+pub use params::{DynamicsParams, Environment, HessianFilter, Integrator, NewtonParams, PreconditionerKind};
 pub use repulsion::{ContactForces, ContactLaw, ContactPotential, RepulsionSpring, SpringKind};

@@ -65,7 +65,8 @@ impl Scene {
 
     /// The parameters of the dynamics.
     pub fn dynamics(&self) -> DynamicsParams {
-        DynamicsParams { environment: self.environment, newton: self.solver.newton }
+        let integrator = self.simulation.integrator;
+        DynamicsParams { integrator, environment: self.environment, newton: self.solver.newton }
     }
 
     /// Name in reports.

@@ -1,6 +1,6 @@
 //! The tables of a scene that belong to the facade itself; the others are the crates' own parameters.
 
-use bowknot_dynamics::NewtonParams;
+use bowknot_dynamics::{Integrator, NewtonParams};
 use bowknot_errors::{Checks, Parameters};
 use bowknot_twoway::{BackwardParams, ForwardParams, StopParams};
 use serde::{Deserialize, Serialize};
@@ -15,6 +15,9 @@ pub struct SimulationParams {
     /// Time step [s]; one frame is one time step. Larger: fewer, harder collision problems, and more
     /// damping by implicit Euler. Default 0.01.
     pub dt: f64,
+    /// How time is integrated: `implicit-euler`, of first order, which damps what vibrates, or `sdirk2`, of
+    /// second order, which makes two solves for a time step. Default `implicit-euler`.
+    pub integrator: Integrator,
     /// Number of time steps of a run [1]. Default 100.
     pub frames: usize,
     /// Most Newton iterations per time step, each with a collision problem [1]; they end earlier at
@@ -189,6 +192,7 @@ impl Default for SimulationParams {
         Self {
             name: String::new(),
             dt: 0.01,
+            integrator: Integrator::default(),
             frames: 100,
             newton_iterations: 8,
             collision_every: CollisionEvery::default(),

@@ -7,6 +7,8 @@ use crate::kind::BodyKind;
 use crate::shapes::Shape;
 use crate::source::Source;
 use crate::values::join;
+use bowknot_constraints::FrictionModel;
+use bowknot_dynamics::Integrator;
 use bowknot_errors::Parameters;
 use std::collections::{BTreeSet, HashMap};
 
@@ -37,6 +39,7 @@ pub(super) fn scene(scene: &Scene, source: &Source) -> Result<(), SceneError> {
     references.check_names();
     references.check_pins();
     references.check_friction_pairs();
+    references.check_integrator();
     let problems = references.problems;
     if !problems.is_empty() {
         return Err(SceneError::Invalid(problems));
@@ -102,6 +105,18 @@ impl<'a> References<'a> {
                     self.report(&path, "follow", unknown("obstacle with a mesh", name, names.into_iter()));
                 }
             }
+        }
+    }
+
+    /// A method of second order carries contact forces from one stage to the next, so it needs to know them.
+    fn check_integrator(&mut self) {
+        let Scene { simulation, contact, solver, .. } = self.scene;
+        let knows_contacts =
+            solver.repulsion.stiffness > 0.0 && contact.friction_model != FrictionModel::Filter;
+        if simulation.integrator != Integrator::ImplicitEuler && !knows_contacts {
+            let message = "needs contact forces in the dynamics: set solver.repulsion.stiffness above 0 and \
+                           contact.friction_model to \"coulomb\", or use \"implicit-euler\"";
+            self.report("simulation", "integrator", message.to_owned());
         }
     }
 

@@ -104,7 +104,7 @@ impl Finished {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bowknot_dynamics::{Body, ClothMaterial, SpringKind};
+    use bowknot_dynamics::{Body, ClothMaterial, Integrator, SpringKind};
     use bowknot_geometry::Vector;
 
     /// Three triangles, and a spring between the vertices `a` and `b`.
@@ -133,7 +133,8 @@ mod tests {
         };
         let mut finished = Finished::default();
         finished.begin(&[true, false, false, false, false, false, false, false, false]);
-        finished.update(&model, &by_component, &counted, &[spring], Tolerance::new(1.0, 0.01));
+        let tolerance = Tolerance::new(1.0, 0.01, Integrator::ImplicitEuler);
+        finished.update(&model, &by_component, &counted, &[spring], tolerance);
         finished.held().to_vec()
     }
 

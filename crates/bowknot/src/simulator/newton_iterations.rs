@@ -1,7 +1,7 @@
-//! The Newton iterations of a time step.
+//! The Newton iterations of a time step, in one stage or several, see [`bowknot_dynamics::dynamics::stages`].
 //!
 //! For each Newton iteration the dynamics computes a target y from x. Prescribed vertices (pins, obstacles)
-//! have their keyframe at t + dt as target. The two-way method moves x towards y without intersections, and
+//! have their keyframe at the end of the stage as target. The two-way method moves x towards y without intersections, and
 //! the vertices inside of solids, which it does not know, follow. With [`CollisionEvery::Step`] the
 //! iterations run without collisions, and the two-way method resolves once, from the start of the step to the
 //! last target.
@@ -16,7 +16,7 @@ use super::report::{
 use super::sleep::SleepingBodies;
 use super::stretch_limits::HeldApart;
 use super::tolerance::Tolerance;
-use super::{MIN_VERTICES, Scratch, Simulator};
+use super::{MIN_VERTICES, Scratch, Simulator, time_of};
 use bowknot_dynamics::{Dynamics, Residual, StepError};
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::CollisionEvery;
@@ -30,11 +30,29 @@ use std::time::Instant;
 /// the contacts that were found on the way.
 const MAX_INTERMEDIATE_STEPS: usize = 24;
 
-/// What the Newton iterations of a time step read and write.
+/// A stage of a time step: from where to where, as shares of the time step.
+#[derive(Clone, Copy, Debug)]
+struct Stage {
+    begin: f64,
+    end: f64,
+    tolerance: Tolerance,
+}
+
+impl Stage {
+    /// Whether it is the whole time step.
+    fn is_whole(self) -> bool {
+        self.end - self.begin == 1.0
+    }
+}
+
+/// What the Newton iterations of a stage read and write.
 struct NewtonIterations<'a> {
     step: usize,
+    /// The time step [s].
     dt: f64,
-    tolerance: Tolerance,
+    /// By how much implicit Euler goes on in the stage [s].
+    length: f64,
+    stage: Stage,
     /// See [`Simulator::set_measured`].
     measured: bool,
     world: &'a World,
@@ -52,7 +70,7 @@ struct NewtonIterations<'a> {
 }
 
 impl Simulator {
-    /// Solves the time step that ends the `statistics`; moves the positions.
+    /// Solves the time step that ends the `statistics`, stage by stage; moves the positions.
     pub(super) fn iterate(
         &mut self,
         tolerance: Tolerance,
@@ -60,12 +78,42 @@ impl Simulator {
         observer: &mut dyn SimulationObserver,
         statistics: &mut StepStatistics,
     ) -> Result<(), SimulationError> {
+        let ends = self.dynamics.params().integrator.stage_ends();
+        // A stage that has ended changes what contacts remember, which an abandoned time step must not.
+        let carried = (ends.len() > 1).then(|| self.contacts.carried().clone());
+        let mut begin = 0.0;
+        for &end in ends {
+            let stage = Stage { begin, end, tolerance };
+            if let Err(error) = self.iterate_stage(stage, scratch, observer, statistics) {
+                carried.into_iter().for_each(|carried| self.contacts.resume(carried));
+                return Err(error);
+            }
+            begin = end;
+        }
+        self.positions.clone_from(&scratch.x);
+        Ok(())
+    }
+
+    fn iterate_stage(
+        &mut self,
+        stage: Stage,
+        scratch: &mut Scratch,
+        observer: &mut dyn SimulationObserver,
+        statistics: &mut StepStatistics,
+    ) -> Result<(), SimulationError> {
         let (step, count, every) = (statistics.step, self.newton_iterations, self.collision_every);
+        if !stage.is_whole() {
+            let (before, time) = (time_of(step - 1, self.dt), statistics.time);
+            let at = if stage.end == 1.0 { time } else { before + stage.end * self.dt };
+            self.lead_to(time, at, scratch);
+        }
         let target_error = |source| SimulationError::target(step, source);
-        let (velocities, mut iterations) = self.newton_iterations(tolerance, scratch, statistics);
+        let done = statistics.newton_iterations;
+        let (velocities, mut iterations) = self.newton_iterations(stage, scratch, statistics);
         iterations.predict(velocities).map_err(target_error)?;
         for iteration in 0..count {
             let is_last = iteration + 1 == count;
+            let iteration = done + iteration;
             iterations.newton_target(iteration).map_err(target_error)?;
             if every == CollisionEvery::Step {
                 iterations.restart(is_last);
@@ -78,29 +126,29 @@ impl Simulator {
             let residual = iterations.residual;
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
             observer.iterated(&Iterated { step, iteration, residual });
-            if tolerance.ends(residual.distance) && !is_cut {
+            if stage.tolerance.ends(residual.distance) && !is_cut {
                 break;
             }
             iterations.finish_groups(is_cut);
         }
-        iterations.end()?;
-        self.positions.clone_from(&scratch.x);
-        Ok(())
+        iterations.end()
     }
 
     /// The velocities at the start of a time step, and what its iterations use.
     fn newton_iterations<'a>(
         &'a mut self,
-        tolerance: Tolerance,
+        stage: Stage,
         scratch: &'a mut Scratch,
         statistics: &'a mut StepStatistics,
     ) -> (&'a [Vector], NewtonIterations<'a>) {
         let dynamics =
             self.sleeping.as_mut().and_then(SleepingBodies::dynamics).unwrap_or(&mut self.dynamics);
+        let length = self.dt * dynamics.params().integrator.stage_length();
         let iterations = NewtonIterations {
             step: statistics.step,
             dt: self.dt,
-            tolerance,
+            length,
+            stage,
             measured: self.measured,
             world: &self.world,
             dynamics,
@@ -118,13 +166,19 @@ impl Simulator {
 }
 
 impl NewtonIterations<'_> {
-    /// Begins the time step: the inertial prediction, and the contacts at its start.
+    /// Begins the stage: the inertial prediction, and the contacts at its start.
     fn predict(&mut self, velocities: &[Vector]) -> Result<(), StepError> {
         let timer = Instant::now();
         let Scratch { start, x, y, prescribed, keyframes, ends, finished, .. } = &mut *self.scratch;
-        self.dynamics.set_step_tolerance(self.tolerance.meters());
-        self.dynamics.begin_step(start, velocities, self.dt)?;
-        self.contacts.begin_step(self.resolver, prescribed, start, self.dt);
+        self.dynamics.set_step_tolerance(self.stage.tolerance.meters());
+        if self.stage.begin == 0.0 {
+            self.dynamics.begin_step(start, velocities, self.dt)?;
+            self.contacts.begin_step(self.resolver, prescribed, start, self.length);
+        } else {
+            start.clone_from(x);
+            self.dynamics.next_stage(start, prescribed);
+            self.contacts.begin_stage(self.resolver, prescribed, start, self.length);
+        }
         self.contacts.apply(self.dynamics)?;
         self.statistics.repulsion_springs = self.contacts.springs().len();
         y.clone_from(start);
@@ -162,13 +216,13 @@ impl NewtonIterations<'_> {
         is_last: bool,
         observer: &mut dyn SimulationObserver,
     ) -> Result<bool, SimulationError> {
-        let Self { step, dt, world, resolver, backend, contacts, .. } = self;
+        let Self { step, dt, stage, world, resolver, backend, contacts, .. } = self;
         let Scratch { start, x, y, prescribed, groups, ends, .. } = &mut *self.scratch;
         let count = world.collision_vertices();
         let (x, y) = (&mut x[..count], &y[..count]);
         let input = ResolveInput {
             prescribed: &prescribed[..count],
-            time_step: Some(*dt),
+            time_step: Some(*dt * (stage.end - stage.begin)),
             start: Some(&start[..count]),
             groups,
             known: contacts.known(count),
@@ -221,7 +275,7 @@ impl NewtonIterations<'_> {
         if differ(&x[..count], &y[..count], resolution) {
             statistics.interior_solves += self.interior.follow(dynamics, prescribed, y, x)?;
             if self.measured {
-                let change = dynamics.energy_change(start, y, x, self.dt, resolution);
+                let change = dynamics.energy_change(dynamics.stage_start(), y, x, self.length, resolution);
                 statistics.collision_energy_j += change.max(0.0);
             }
         }
@@ -234,27 +288,27 @@ impl NewtonIterations<'_> {
     /// Lets the groups of bodies whose time step is solved stay where they are, unless the collision problem
     /// was cut short.
     fn finish_groups(&mut self, is_cut: bool) {
-        let Self { dynamics, contacts, world, tolerance, .. } = self;
+        let Self { dynamics, contacts, world, stage, .. } = self;
         let Scratch { x, prescribed, ends, finished, .. } = &mut *self.scratch;
         let delta = self.resolver.scene().lengths().delta;
         // A device sets up its matrices anew where other vertices are free.
         let may_finish = !is_cut && dynamics.backend().is_none();
         if may_finish && ends.are_reached(world, prescribed, &x[..world.collision_vertices()], delta) {
             let (distances, springs) = (dynamics.component_distances(), contacts.springs());
-            finished.update(dynamics.model(), distances, contacts.counted(), springs, *tolerance);
+            finished.update(dynamics.model(), distances, contacts.counted(), springs, stage.tolerance);
         } else {
             finished.release();
         }
     }
 
-    /// Ends the time step at x: whether it is solved, a judgment of what a device has computed, and what
+    /// Ends the stage at x: whether it is solved, a judgment of what a device has computed, and what
     /// contacts remember.
     fn end(&mut self) -> Result<(), SimulationError> {
         let Self { step, world, resolver, backend, contacts, .. } = self;
         let Scratch { start, x, .. } = &*self.scratch;
         let forces = self.dynamics.contact_forces();
         let search = Search { world, contacts, forces: &forces, positions: x };
-        let is_balanced = self.tolerance.solves(self.residual.distance);
+        let is_balanced = self.stage.tolerance.solves(self.residual.distance);
         self.statistics.end_iterations(&search, &self.residual, is_balanced, self.slowest_body);
         self.statistics.held_apart = contacts.over(x).and_then(|over| HeldApart::new(world, &over));
         let judged = backend.judge(resolver.scene(), &x[..world.collision_vertices()]);

@@ -34,7 +34,8 @@ impl Simulator {
         let work_start = self.device_work();
         let step = self.step + 1;
         let time = time_of(step, self.dt);
-        let tolerance = Tolerance::new(self.step_tolerance * self.resolver.scene().lengths().edge, self.dt);
+        let at_reference = self.step_tolerance * self.resolver.scene().lengths().edge;
+        let tolerance = Tolerance::new(at_reference, self.dt, self.dynamics.params().integrator);
         let tolerance_m = tolerance.meters();
         let mut statistics = StepStatistics {
             step,
@@ -97,9 +98,8 @@ impl Simulator {
         told.map_err(|source| SimulationError::backend(world, *step, source))
     }
 
-    /// Takes an abandoned time step back; `anchors` were those at its start.
+    /// Takes an abandoned time step back, in which positions have not changed; `anchors` were those at its start.
     fn take_back(&mut self, anchors: Vec<Vec<Point>>, scratch: Scratch) -> Result<(), SimulationError> {
-        self.positions.clone_from(&scratch.start);
         self.place_absent(self.time());
         self.anchors = anchors;
         self.attachments.iter_mut().for_each(Vec::clear);

@@ -1,5 +1,7 @@
 //! When the iterations of a time step end.
 
+use bowknot_dynamics::Integrator;
+
 /// Time step that tolerances are given for [s].
 const REFERENCE_STEP: f64 = 0.01;
 
@@ -8,13 +10,17 @@ const REFERENCE_STEP: f64 = 0.01;
 pub(super) struct Tolerance(f64);
 
 impl Tolerance {
-    /// In a time step of `dt` [s], with the `tolerance` in one of 1/100 s [m].
+    /// In a time step of `dt` [s] by an `integrator`, with the `tolerance` in one of 1/100 s by implicit Euler [m].
     ///
     /// In shorter time steps it shrinks with their square, as what gravity does: else it would be an
-    /// acceleration without bound. In longer ones it grows with them: a constant error of velocities.
-    pub fn new(tolerance: f64, dt: f64) -> Self {
+    /// acceleration without bound. In longer ones it grows with them: a constant error of velocities. A method of
+    /// second order has a smaller one by the length of its stages, which shrinks with the cube of the time step, as
+    /// its own error does.
+    pub fn new(tolerance: f64, dt: f64, integrator: Integrator) -> Self {
         let ratio = dt / REFERENCE_STEP;
-        Self(tolerance * ratio.min(ratio * ratio))
+        let is_second_order = integrator.stage_ends().len() > 1;
+        let order = if is_second_order { integrator.stage_length() * ratio.min(1.0) } else { 1.0 };
+        Self(tolerance * ratio.min(ratio * ratio) * order)
     }
 
     /// Its value [m]; 0 if there is none.
@@ -37,9 +43,21 @@ impl Tolerance {
 mod tests {
     use super::*;
 
+    fn euler(tolerance: f64, dt: f64) -> Tolerance {
+        Tolerance::new(tolerance, dt, Integrator::ImplicitEuler)
+    }
+
+    #[test]
+    fn stages_have_tighter_tolerances_that_fall_with_the_cube_of_the_time_step() {
+        let at = |dt| Tolerance::new(1.0, dt, Integrator::Sdirk2).meters();
+        let share = Integrator::Sdirk2.stage_length();
+        assert!((at(0.01) - share).abs() < 1e-15);
+        assert!((at(0.001) / at(0.01) - 1e-3).abs() < 1e-15);
+    }
+
     #[test]
     fn a_residual_up_to_the_tolerance_ends_and_solves() {
-        let tolerance = Tolerance::new(1e-3, 0.02);
+        let tolerance = euler(1e-3, 0.02);
         assert_eq!(tolerance.meters(), 2e-3);
         for (residual, solved) in [(0.0, true), (2e-3, true), (2.1e-3, false), (f64::NAN, false)] {
             assert_eq!(
@@ -52,13 +70,13 @@ mod tests {
 
     #[test]
     fn without_a_tolerance_nothing_ends_and_all_is_solved() {
-        let none = Tolerance::new(0.0, 0.01);
+        let none = euler(0.0, 0.01);
         assert!(!none.ends(0.0) && none.solves(1.0));
     }
 
     #[test]
     fn the_tolerance_stands_for_an_acceleration_in_short_steps_and_a_velocity_in_long_ones() {
-        assert!((Tolerance::new(1.0, 0.001).meters() - 0.01).abs() < 1e-15);
-        assert!((Tolerance::new(1.0, 0.05).meters() - 5.0).abs() < 1e-12);
+        assert!((euler(1.0, 0.001).meters() - 0.01).abs() < 1e-15);
+        assert!((euler(1.0, 0.05).meters() - 5.0).abs() < 1e-12);
     }
 }

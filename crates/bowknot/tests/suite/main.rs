@@ -26,6 +26,7 @@ mod golden;
 mod held_apart;
 /// Numbers far out of range at every key of a scene.
 mod hostile;
+mod integrators;
 /// Sets of defaults: what `quick` saves, and that nothing intersects.
 mod polygons;
 /// Obstacles that appear and vanish.

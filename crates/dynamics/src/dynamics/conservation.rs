@@ -21,8 +21,13 @@
 //!
 //! Positions do not change, so no intersection can result. Energy is not gained: a body, or a group of bodies
 //! that touch, ends with at most the kinetic energy that it had at the start plus the work of gravity, air
-//! and elasticity since, or with at most the kinetic energy without the correction.
+//! and elasticity since, or, after a step of implicit Euler, with at most the kinetic energy without the
+//! correction.
+//!
+//! After a time step of several stages ([`super::stages`]) velocities have no such error, and only the momenta
+//! of groups are corrected.
 
+use super::Dynamics;
 use super::newton::momentum::nodes_of;
 use super::newton::state::Step;
 use crate::groups::{Group, Groups, Hold};
@@ -118,10 +123,12 @@ struct Correction<'a> {
     x1: &'a [Vector],
     /// (x0 + x1) / 2.
     middle: Vec<Vector>,
-    /// Mean velocities of the step.
+    /// Velocities without the correction: the mean velocities of a step of implicit Euler.
     mean: Vec<Vector>,
-    /// Gravity, external forces and those of the air at the end [N].
+    /// Gravity, external forces and those of the air, their means over the stages [N].
     forces: Vec<Vector>,
+    /// Whether the time step is one of implicit Euler.
+    is_euler: bool,
     /// Whether there are forces of the air.
     in_air: bool,
     /// Elastic energy at x0 minus that at x1, by component [J].
@@ -130,23 +137,24 @@ struct Correction<'a> {
 
 /// What the velocities at the end of a time step depend on, besides its end.
 pub(super) struct EndOfStep<'a> {
-    pub model: &'a DynamicsModel,
-    pub environment: &'a Environment,
+    model: &'a DynamicsModel,
+    environment: &'a Environment,
     /// By node [N].
-    pub external_forces: &'a [Vector],
-    pub repulsion: &'a Repulsion,
-    pub step: &'a Step,
+    external_forces: &'a [Vector],
+    repulsion: &'a Repulsion,
+    step: &'a Step,
 }
 
-impl EndOfStep<'_> {
-    /// Velocities at the end of the time step, at positions `x` [m], in `v` [m/s], see
+impl<'a> EndOfStep<'a> {
+    pub fn new(dynamics: &'a Dynamics, step: &'a Step) -> Self {
+        let Dynamics { model, params, external_forces, repulsion, .. } = dynamics;
+        Self { model, environment: &params.environment, external_forces, repulsion, step }
+    }
+
+    /// Corrects velocities `v` [m/s] at the end of the time step, at positions `x` [m], see
     /// [`crate::Dynamics::end_velocities`].
-    pub fn velocities(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {
+    pub fn conserve(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {
         let Self { model, step, repulsion, .. } = self;
-        let dt = step.dt;
-        for ((v, x), x0) in v.iter_mut().zip(x).zip(&step.positions) {
-            *v = (x - x0) / dt;
-        }
         let by_node = || model.node_vertex.iter().map(|&vertex| vertex as usize);
         let free: Vec<bool> = (model.components.iter())
             .map(|c| c.clone().all(|n| !prescribed[model.node_vertex[n as usize] as usize]))
@@ -156,15 +164,25 @@ impl EndOfStep<'_> {
         }
         let x1: Vec<Vector> = by_node().map(|vertex| x[vertex].coords).collect();
         let mean: Vec<Vector> = by_node().map(|vertex| v[vertex]).collect();
-        let forces = self.outer_forces(&mean);
-        let (before, after) = (model.elastic_by_component(&step.start), model.elastic_by_component(&x1));
+        let mut forces = self.outer_forces(&mean);
+        let (mut x0, mut v0) = (&step.start, &step.velocities);
+        if let Some(earlier) = &step.earlier {
+            (x0, v0) = (&earlier.start, &earlier.velocities);
+            let last = step.dt / step.whole;
+            forces
+                .iter_mut()
+                .zip(&earlier.forces)
+                .for_each(|(f, before)| *f = *f * last + before * (1.0 - last));
+        }
+        let (before, after) = (model.elastic_by_component(x0), model.elastic_by_component(&x1));
         let correction = Correction {
             model,
-            dt,
-            x0: &step.start,
-            v0: &step.velocities,
+            dt: step.whole,
+            is_euler: step.earlier.is_none(),
+            x0,
+            v0,
             x1: &x1,
-            middle: step.start.iter().zip(&x1).map(|(x0, x1)| (x0 + x1) * 0.5).collect(),
+            middle: x0.iter().zip(&x1).map(|(x0, x1)| (x0 + x1) * 0.5).collect(),
             mean,
             forces,
             in_air: step.drag.is_some(),
@@ -176,7 +194,7 @@ impl EndOfStep<'_> {
     }
 
     /// Gravity, external forces and those of the air at velocities `v` [m/s], by node [N].
-    fn outer_forces(&self, v: &[Vector]) -> Vec<Vector> {
+    pub fn outer_forces(&self, v: &[Vector]) -> Vec<Vector> {
         let Self { model, environment, step, .. } = self;
         let force = |node: usize| {
             let mass = model.node_masses[node];
@@ -196,7 +214,7 @@ impl Correction<'_> {
         let mut v = self.mean.clone();
         let components = &self.model.components;
         for (index, component) in components.iter().enumerate() {
-            if free[index] && component.len() > 1 {
+            if self.is_euler && free[index] && component.len() > 1 {
                 self.turn(component, self.released[index], &mut v);
             }
         }
@@ -301,7 +319,8 @@ impl Correction<'_> {
             beside += half * (v[n] - before(n)).norm_squared();
         }
         let released = group.members.iter().map(|&c| self.released[c]).sum();
-        let allowed = mean.max(self.kinetic_allowed(nodes.clone(), released));
+        let bound = self.kinetic_allowed(nodes.clone(), released);
+        let allowed = if self.is_euler { mean.max(bound) } else { bound };
         let share = if rigid + beside > allowed { ((allowed - rigid) / beside).max(0.0).sqrt() } else { 1.0 };
         for n in nodes {
             v[n] = after(n) + if beside > 0.0 { (v[n] - before(n)) * share } else { Vector::zeros() };

@@ -20,6 +20,7 @@ mod bodies_potential;
 mod conservation;
 mod info;
 mod newton;
+pub mod stages;
 mod two_level;
 
 pub use bodies_potential::{BodiesPotential, MatrixBlocks, StepTerms};
@@ -254,6 +255,12 @@ impl Dynamics {
         self.work.gradient.get(node as usize).copied().filter(|_| self.device.is_none())
     }
 
+    /// Positions from which inertia leads in the stage of the step, with velocities that implicit Euler then gives as (x -
+    /// these) / length of the stage [m]; one entry per vertex, none without a step that was begun.
+    pub fn stage_start(&self) -> &[Point] {
+        self.step.as_ref().map_or(&[], Step::from)
+    }
+
     /// Positions where inertia alone leads from the start of the step [m], one entry per vertex. Obstacles
     /// stay where they are; without a step that was begun the list is empty.
     pub fn inertial_positions(&self) -> Vec<Point> {
@@ -404,14 +411,27 @@ impl Dynamics {
         self.check_finite("x0", |vertex| x0[vertex].coords)?;
         self.check_finite("v0", |vertex| v0[vertex])?;
         let mut step = self.step.take().unwrap_or_default();
+        (step.earlier, step.whole) = (None, dt);
+        step.pressed.clear();
+        step.positions.clear();
+        step.positions.extend_from_slice(x0);
+        self.enter(step, x0, v0);
+        Ok(())
+    }
+
+    /// Begins a stage of the time step, in which inertia leads from positions `from` with velocities `v`; the bodies
+    /// are at the positions of the step.
+    fn enter(&mut self, mut step: Step, from: &[Point], v: &[Vector]) {
+        let dt = self.params.integrator.stage_length() * step.whole;
         let model = &self.model;
         let nodes = || model.node_vertex.par_iter().with_min_len(MIN_NODES);
-        nodes().map(|&v| x0[v as usize].coords).collect_into_vec(&mut step.start);
-        nodes().map(|&v| v0[v as usize]).collect_into_vec(&mut step.velocities);
-        let inertial = nodes().enumerate().map(|(node, &v)| {
-            let gravity = model.gravity(v as usize, self.params.environment.gravity);
+        nodes().map(|&vertex| from[vertex as usize].coords).collect_into_vec(&mut step.start);
+        nodes().map(|&vertex| v[vertex as usize]).collect_into_vec(&mut step.velocities);
+        let inertial = nodes().enumerate().map(|(node, &vertex)| {
+            let vertex = vertex as usize;
+            let gravity = model.gravity(vertex, self.params.environment.gravity);
             let acceleration = gravity + self.external_forces[node] / model.node_masses[node];
-            x0[v as usize].coords + v0[v as usize] * dt + acceleration * (dt * dt)
+            from[vertex].coords + v[vertex] * dt + acceleration * (dt * dt)
         });
         inertial.collect_into_vec(&mut step.inertial);
         if step.dt != dt {
@@ -427,15 +447,17 @@ impl Dynamics {
         }
         step.dt = dt;
         step.last_target = None;
+        step.wanted.clear();
+        if self.params.integrator.stage_ends().len() > 1 {
+            step.wanted
+                .extend(model.node_vertex.iter().map(|&vertex| step.positions[vertex as usize].coords));
+        }
         let step_tolerance = self.step_tolerance;
         self.course = Course { unprepared: true, step_tolerance, ..Course::default() };
         self.work.solver.begin_step();
         self.work.cache.clear();
-        step.positions.clear();
-        step.positions.extend_from_slice(x0);
-        self.repulsion.anchor(x0);
+        self.repulsion.anchor(&step.positions);
         self.step = Some(step);
-        Ok(())
     }
 
     /// Computes the target `y` [m] from the current iterate `x` [m] by a Newton iteration and the ones that
@@ -475,6 +497,7 @@ impl Dynamics {
             let vertex = vertex as usize;
             *imposed = if prescribed[vertex] { keyframes[vertex] - x[vertex] } else { Vector::zeros() };
         });
+        self.record_pressure(&mut step, x, prescribed);
         self.repulsion.place_obstacles(keyframes);
         let solved = self.with_bodies(&step, true, |newton| newton.solve());
         let mut info = match solved {
@@ -492,6 +515,9 @@ impl Dynamics {
             let is_free = node != NO_NODE && free[node as usize];
             *y = if is_free { Point::from(trial[node as usize]) } else { *keyframe };
         });
+        for ((wanted, target), _) in step.wanted.iter_mut().zip(trial).zip(free).filter(|(_, free)| **free) {
+            *wanted = *target;
+        }
         step.last_target.get_or_insert_default().clone_from(trial);
         self.step = Some(step);
         self.check_finite("target", |vertex| y[vertex].coords)?;
@@ -504,8 +530,8 @@ impl Dynamics {
         Ok(info)
     }
 
-    /// Makes a whole step without contact resolution: `newton_iterations` targets, each of which is the next
-    /// iterate. `x` and `v` advance by `dt`, see [`Self::end_velocities`]. Prescribed vertices end at their
+    /// Makes a whole step without contact resolution: `newton_iterations` targets in each stage, each of which
+    /// is the next iterate. `x` and `v` advance by `dt`, see [`Self::end_velocities`]. Prescribed vertices end at their
     /// `keyframes` and have the velocity that takes them there.
     ///
     /// # Errors
@@ -523,9 +549,16 @@ impl Dynamics {
         let mut iterate = x.to_vec();
         let mut target = x.to_vec();
         let mut infos = Vec::with_capacity(newton_iterations);
-        for _ in 0..newton_iterations {
-            infos.push(self.newton_target(&iterate, prescribed, keyframes, &mut target)?);
-            iterate.copy_from_slice(&target);
+        for (stage, &end) in self.params.integrator.stage_ends().iter().enumerate() {
+            if stage > 0 {
+                self.next_stage(&iterate, prescribed);
+            }
+            let at = |(from, to): (&Point, &Point)| if end < 1.0 { from + (to - from) * end } else { *to };
+            let keyframes: Vec<Point> = x.iter().zip(keyframes).map(at).collect();
+            for _ in 0..newton_iterations {
+                infos.push(self.newton_target(&iterate, prescribed, &keyframes, &mut target)?);
+                iterate.copy_from_slice(&target);
+            }
         }
         self.end_velocities(&iterate, prescribed, &Touching::default(), v);
         x.copy_from_slice(&iterate);
@@ -538,9 +571,8 @@ impl Dynamics {
     /// stays unchanged.
     pub fn end_velocities(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {
         let Some(step) = &self.step else { return };
-        let Self { model, params, external_forces, repulsion, .. } = self;
-        EndOfStep { model, environment: &params.environment, external_forces, repulsion, step }
-            .velocities(x, prescribed, touching, v);
+        self.stage_velocities(step, x, prescribed, v);
+        EndOfStep::new(self, step).conserve(x, prescribed, touching, v);
     }
 
     /// Copies the iterate, by node.

@@ -2,7 +2,7 @@ use super::*;
 use crate::body::Body;
 use crate::linear::system::System;
 use crate::material::ClothMaterial;
-use crate::params::{HessianFilter, NewtonParams};
+use crate::params::{HessianFilter, Integrator, NewtonParams};
 use crate::repulsion::SpringKind;
 use crate::test_support::grid_triangles;
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -21,6 +21,7 @@ fn crumpled() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
     let model =
         DynamicsModel::new(rest.clone(), vec![Body::cloth("sheet", triangles, material)]).expect("valid");
     let params = DynamicsParams {
+        integrator: Integrator::ImplicitEuler,
         environment: Environment { air_drag: 0.5, ..Environment::default() },
         newton: NewtonParams::default(),
     };

@@ -13,6 +13,7 @@ fn defaults_are_valid_and_survive_toml() {
 #[test]
 fn every_number_out_of_its_range_is_named() {
     let params = DynamicsParams {
+        integrator: Integrator::ImplicitEuler,
         environment: Environment {
             gravity: Vector::new(f64::NAN, 0.0, 0.0),
             air_drag: -1.0,

@@ -42,9 +42,11 @@
 //! | `linearize` | force and Hessian of each spring |
 //! | `update` | bends of laws and bounds of friction after a solve |
 //! | `energy` | energies |
+//! | `impacts` | what contacts do to velocities at the end of a stage of a time step |
 //! | `potential` | [`ContactPotential`], for other solvers |
 
 mod energy;
+pub(crate) mod impacts;
 mod law;
 mod linearize;
 mod potential;

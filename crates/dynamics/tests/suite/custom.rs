@@ -18,7 +18,7 @@ struct Spring {
     rest: f64,
 }
 
-fn spring(vertices: [u32; 2], stiffness: f64, rest: f64) -> Arc<dyn CustomElement> {
+pub fn spring(vertices: [u32; 2], stiffness: f64, rest: f64) -> Arc<dyn CustomElement> {
     Arc::new(Spring { vertices, stiffness, rest })
 }
 
@@ -106,12 +106,12 @@ impl CustomElement for Logarithm {
     }
 }
 
-fn group(elements: Vec<Arc<dyn CustomElement>>) -> Vec<ElementGroup> {
+pub fn group(elements: Vec<Arc<dyn CustomElement>>) -> Vec<ElementGroup> {
     vec![ElementGroup::new("own", elements)]
 }
 
 /// Grains of 1 g at these places.
-fn grains(places: &[Point]) -> DynamicsModel {
+pub fn grains(places: &[Point]) -> DynamicsModel {
     let radius = 0.005;
     let volume = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
     let material = ParticleMaterial { density: 1e-3 / volume, radius };

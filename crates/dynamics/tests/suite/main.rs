@@ -4,6 +4,7 @@ mod air;
 mod backend;
 mod common;
 mod custom;
+mod integrators;
 mod physics;
 mod potential;
 mod repulsion;

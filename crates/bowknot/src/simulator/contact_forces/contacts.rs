@@ -116,15 +116,19 @@ impl Contacts {
         self.carried = carried;
     }
 
-    /// Begins a time step at the positions `start`. It forgets the pairs of the last time step that are out
-    /// of contact range, and finds the contacts from positions and what is carried alone, so that a resumed
-    /// run finds the same.
+    /// Begins a time step at the positions `start`, in which nothing touches yet. See [`Self::begin_stage`].
     pub fn begin_step(&mut self, resolver: &Resolver, prescribed: &[bool], start: &[Point], dt: f64) {
+        self.touching = Touching::default();
+        self.begin_stage(resolver, prescribed, start, dt);
+    }
+
+    /// Begins a stage of a time step at the positions `start`, in which implicit Euler goes on by `dt` [s]. It
+    /// finds the contacts from positions and what is carried alone, so that a resumed run finds the same.
+    pub fn begin_stage(&mut self, resolver: &Resolver, prescribed: &[bool], start: &[Point], dt: f64) {
         let (rest, before) = (resolver.scene().rest(), &self.carried.yielding);
         if self.held.begin_step(self.limited.edges(), [rest, start], prescribed, before) {
             self.limited.set_limits(self.held.limits());
         }
-        self.touching = Touching::default();
         self.record_pairs_in_range(resolver);
         self.newton.begin_step(&self.touching);
         let CarriedContacts { forces, means, .. } = &self.carried;

@@ -12,6 +12,18 @@ impl Simulator {
     /// Fills in which vertices are prescribed at `time`, the end of the time step, and their keyframes. The
     /// vertices of a pin form a group: they move by one fraction of their way.
     pub(crate) fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
+        self.place_prescribed(time, time, scratch);
+    }
+
+    /// Places the keyframes of the vertices that are prescribed in a time step that ends at `time`, with those of
+    /// bodies asleep, where they are at the end of a stage of it, `at`.
+    pub(crate) fn lead_to(&mut self, time: f64, at: f64, scratch: &mut Scratch) {
+        let prescribed = scratch.prescribed.clone();
+        self.place_prescribed(time, at, scratch);
+        scratch.prescribed = prescribed;
+    }
+
+    fn place_prescribed(&mut self, time: f64, at: f64, scratch: &mut Scratch) {
         let Self { world, anchors, attachments, positions, dt, .. } = self;
         let Scratch { prescribed, keyframes, groups, .. } = scratch;
         let count = world.collision_vertices();
@@ -23,7 +35,7 @@ impl Simulator {
         for body in world.bodies.iter().filter(|body| body.kind.is_none()) {
             let range = body.vertices.start as usize..body.vertices.end as usize;
             prescribed[range.clone()].fill(true);
-            body.motion.positions(&world.base[range.clone()], time, &mut keyframes[range]);
+            body.motion.positions(&world.base[range.clone()], at, &mut keyframes[range]);
         }
         for (index, ((pin, anchor), attachments)) in
             world.pins.iter().zip(anchors).zip(attachments).enumerate()
@@ -44,7 +56,7 @@ impl Simulator {
                 let homes: Vec<Point> = pin.vertices.iter().map(home).collect();
                 *attachments = world.attach(pin, if anchor.is_empty() { &homes } else { anchor });
             }
-            let place = pin.motion.as_ref().map(|motion| motion.at(time));
+            let place = pin.motion.as_ref().map(|motion| motion.at(at));
             for (k, &v) in pin.vertices.iter().enumerate() {
                 let v = v as usize;
                 let home = anchor.get(k).unwrap_or(&world.positions[v]);

@@ -207,8 +207,8 @@ impl StepStatistics {
         self.slowest_body = call.slowest_body.filter(|_| !call.converged).map(name_of);
     }
 
-    /// Fills in with which `residual` the iterations ended, and where they are out of balance if the time
-    /// step is not solved.
+    /// Fills in with which `residual` the iterations of a stage ended, and where they are out of balance if it
+    /// is not solved.
     pub(crate) fn end_iterations(
         &mut self,
         search: &Search<'_>,
@@ -216,9 +216,11 @@ impl StepStatistics {
         is_balanced: bool,
         slowest_body: Option<u32>,
     ) {
-        (self.residual_n, self.residual_m) = (residual.force, residual.distance);
-        self.solved = self.converged && is_balanced;
-        if !self.solved {
+        self.residual_n = self.residual_n.max(residual.force);
+        self.residual_m = self.residual_m.max(residual.distance);
+        let is_solved = self.converged && is_balanced;
+        self.solved &= is_solved;
+        if !is_solved {
             let of_forces = || residual.vertex.map(|vertex| search.of_forces(vertex));
             let of_collisions = || search.of_collisions(&self.waits, slowest_body);
             // Where forces balance, what stopped the collision stage is the cause.

@@ -14,24 +14,54 @@ use bowknot_geometry::{Point, Vector};
 use nalgebra::Matrix3;
 use std::sync::Arc;
 
-/// The current time step.
+/// The current time step, or a stage of it.
 #[derive(Debug, Default)]
 pub struct Step {
+    /// Its length h, by which implicit Euler goes on from `start` with `velocities` [s].
     pub dt: f64,
-    /// Positions at the start.
+    /// Positions from which inertia leads.
     pub start: Vec<Vector>,
-    /// Velocities at the start.
+    /// Velocities there.
     pub velocities: Vec<Vector>,
-    /// Positions at the start, by vertex.
+    /// Positions at which the bodies are at the start, by vertex.
     pub positions: Vec<Point>,
+    /// What the stages before leave to this one; None in the first.
+    pub earlier: Option<Box<Earlier>>,
+    /// Length of the time step [s].
+    pub whole: f64,
+    /// Sum of the normal forces of contacts on each node before the stage [N]; empty if not yet known, or if
+    /// there is but one stage.
+    pub pressed: Vec<f64>,
     /// Positions x~ where inertia leads.
     pub inertial: Vec<Vector>,
+    /// Where each node was to go by the last target in which it was free; only if there are several stages.
+    pub wanted: Vec<Vector>,
     /// The last target, if there is one: the next solve starts from it.
     pub last_target: Option<Vec<Vector>>,
     /// Bending plus its damping / dt, as a matrix.
     pub scalar: Arc<SplitForm>,
     /// None in a vacuum.
     pub drag: Option<Drag>,
+}
+
+/// What the first stage of a time step leaves to the second.
+#[derive(Debug, Default)]
+pub struct Earlier {
+    /// Positions at the start of the time step, by node.
+    pub start: Vec<Vector>,
+    /// Velocities there.
+    pub velocities: Vec<Vector>,
+    /// Positions from which inertia leads, by vertex.
+    pub from: Vec<Point>,
+    /// Gravity, external forces and those of the air in the first stage, by node [N].
+    pub forces: Vec<Vector>,
+}
+
+impl Step {
+    /// Positions from which inertia leads, by vertex.
+    pub fn from(&self) -> &[Point] {
+        self.earlier.as_ref().map_or(&self.positions, |earlier| &earlier.from)
+    }
 }
 
 /// What the host keeps of a time step on a device.
