@@ -12,6 +12,7 @@ mod funnel;
 mod goals;
 mod gpu;
 mod impact_zones;
+mod integrators;
 mod joint;
 mod lengths;
 mod newton;
@@ -37,6 +38,7 @@ pub const ALL: &[&dyn Figure] = &[
     &collision_error::CollisionError { targets: Targets::Unaware },
     &contacts_alone::ContactsAlone,
     &simulation_error::SimulationError,
+    &integrators::Integrators,
     &convergence::Convergence,
     &table_1::Table1,
     &table_2::Table2,
