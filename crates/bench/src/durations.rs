@@ -12,6 +12,7 @@ const QUICK: &[(&str, u32)] = &[
     ("collision-error-unaware", 60),
     ("contacts-alone", 25),
     ("simulation-error", 4),
+    ("integrators", 18),
     ("convergence", 13),
     ("table-1", 40),
     ("table-2", 160),

@@ -3,8 +3,8 @@
 use super::Draw;
 use bowknot::check::{Judge, Parts, StateOptions};
 use bowknot::io::{
-    FrameSource, FrameStack, Import, IoError, Mesh, read_mesh as read, read_obj, read_ply, write_obj,
-    write_ply,
+    FrameSource, FrameStack, Import, IoError, Mesh, read_mesh as read, read_mesh_part, read_obj, read_ply,
+    write_obj, write_ply,
 };
 use bowknot::recording::States;
 use bowknot_geometry::{Topology, check_mesh};
@@ -80,6 +80,7 @@ fn mesh(
         Err(error) => return check_error(&error),
     };
     check_sound(&mesh);
+    part(path, &mesh);
     let again = write(path, &mesh).and_then(|()| read_again(path, &import));
     let again = again.unwrap_or_else(|error| panic!("what was written is refused: {error}"));
     assert_eq!(again.positions, mesh.positions);
@@ -100,6 +101,7 @@ fn solid(path: &Path) -> bool {
     match read(path, &Import::default()) {
         Ok(mut mesh) => {
             check_sound(&mesh);
+            part(path, &mesh);
             check_sound(&mesh.clone().into_surface());
             mesh.drop_unused_vertices();
             check_sound(&mesh);
@@ -114,11 +116,24 @@ fn animation(path: &Path) -> bool {
     let frames = || -> Result<(), IoError> {
         let source = FrameSource::open(path)?;
         for index in 0..source.len().min(3) {
-            check_sound(&source.read(index)?);
+            let mesh = source.read(index)?;
+            check_sound(&mesh);
+            part(path, &mesh);
         }
         Ok(())
     };
     frames().map_or_else(|error| check_error(&error), |()| true)
+}
+
+/// Reads the part of a file that its `mesh` names last, or one that hardly is there.
+fn part(path: &Path, mesh: &Mesh) {
+    let name = mesh.names.last().map_or("part", String::as_str);
+    match read_mesh_part(path, &Import::default(), name) {
+        Ok(part) => check_sound(&part),
+        Err(error) => {
+            check_error(&error);
+        }
+    }
 }
 
 /// Checks that indices are in range and numbers finite, and that neither the topology nor the judge panics.
