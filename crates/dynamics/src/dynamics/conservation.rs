@@ -27,7 +27,6 @@
 //! After a time step of several stages ([`super::stages`]) velocities have no such error, and only the momenta
 //! of groups are corrected.
 
-use super::Dynamics;
 use super::newton::momentum::nodes_of;
 use super::newton::state::Step;
 use crate::groups::{Group, Groups, Hold};
@@ -137,20 +136,15 @@ struct Correction<'a> {
 
 /// What the velocities at the end of a time step depend on, besides its end.
 pub(super) struct EndOfStep<'a> {
-    model: &'a DynamicsModel,
-    environment: &'a Environment,
+    pub model: &'a DynamicsModel,
+    pub environment: &'a Environment,
     /// By node [N].
-    external_forces: &'a [Vector],
-    repulsion: &'a Repulsion,
-    step: &'a Step,
+    pub external_forces: &'a [Vector],
+    pub repulsion: &'a Repulsion,
+    pub step: &'a Step,
 }
 
-impl<'a> EndOfStep<'a> {
-    pub fn new(dynamics: &'a Dynamics, step: &'a Step) -> Self {
-        let Dynamics { model, params, external_forces, repulsion, .. } = dynamics;
-        Self { model, environment: &params.environment, external_forces, repulsion, step }
-    }
-
+impl EndOfStep<'_> {
     /// Corrects velocities `v` [m/s] at the end of the time step, at positions `x` [m], see
     /// [`crate::Dynamics::end_velocities`].
     pub fn conserve(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {

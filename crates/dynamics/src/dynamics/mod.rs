@@ -572,7 +572,12 @@ impl Dynamics {
     pub fn end_velocities(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {
         let Some(step) = &self.step else { return };
         self.stage_velocities(step, x, prescribed, v);
-        EndOfStep::new(self, step).conserve(x, prescribed, touching, v);
+        self.end_of(step).conserve(x, prescribed, touching, v);
+    }
+
+    fn end_of<'a>(&'a self, step: &'a Step) -> EndOfStep<'a> {
+        let Self { model, params, external_forces, repulsion, .. } = self;
+        EndOfStep { model, environment: &params.environment, external_forces, repulsion, step }
     }
 
     /// Copies the iterate, by node.

@@ -30,7 +30,6 @@
 //! Deuflhard et al. 2008, "A contact-stabilized Newmark method for dynamical contact problems").
 
 use super::Dynamics;
-use super::conservation::EndOfStep;
 use super::newton::state::{Earlier, Step};
 use crate::nodes::NO_NODE;
 use crate::params::Integrator;
@@ -144,6 +143,6 @@ impl Dynamics {
 
     fn outer_forces(&self, step: &Step, v: &[Vector]) -> Vec<Vector> {
         let of_nodes: Vec<Vector> = self.by_node(v).collect();
-        EndOfStep::new(self, step).outer_forces(&of_nodes)
+        self.end_of(step).outer_forces(&of_nodes)
     }
 }
