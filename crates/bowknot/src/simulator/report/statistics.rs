@@ -216,8 +216,10 @@ impl StepStatistics {
         is_balanced: bool,
         slowest_body: Option<u32>,
     ) {
-        self.residual_n = self.residual_n.max(residual.force);
-        self.residual_m = self.residual_m.max(residual.distance);
+        // The larger one of the stages; one that is not a number stays.
+        let larger = |new: f64, old: f64| if new.is_nan() || new > old { new } else { old };
+        self.residual_n = larger(residual.force, self.residual_n);
+        self.residual_m = larger(residual.distance, self.residual_m);
         let is_solved = self.converged && is_balanced;
         self.solved &= is_solved;
         if !is_solved {
