@@ -4,7 +4,7 @@ use bowknot_geometry::{PairKind, Point};
 use bowknot_proximity::{CollisionModel, Pair};
 use bowknot_scene::world::World;
 use bowknot_twoway::Resolver;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use serde::Serialize;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -122,9 +122,13 @@ fn is_within_part(model: &CollisionModel, kind: PairKind, pair: &Pair) -> bool {
 struct Neighbors {
     /// The vertices that edges join each vertex with; made when first needed.
     edges: Vec<Vec<u32>>,
-    /// The vertex and bound of the last search, and what it has reached.
+    /// The vertex and bound of the last search.
     last: Option<(u32, f64)>,
-    reached: FxHashSet<u32>,
+    /// Lengths of the shortest paths that it has found to each vertex [m], infinite where it has not been; a few edges
+    /// count as no length.
+    lengths: Vec<f64>,
+    /// The vertices where it has been.
+    reached: Vec<u32>,
 }
 
 impl Neighbors {
@@ -132,41 +136,56 @@ impl Neighbors {
     fn are(&mut self, world: &World, x: &[Point], kind: PairKind, pair: &Pair, bound: f64) -> bool {
         if self.edges.is_empty() {
             self.edges = edges(world);
+            self.lengths = vec![f64::INFINITY; self.edges.len()];
         }
         if self.last != Some((pair.vertices[0], bound)) {
             self.last = Some((pair.vertices[0], bound));
-            self.reached = self.reach(world, x, pair.vertices[0], bound);
+            self.reach(world, x, pair.vertices[0], bound);
         }
-        pair.vertices[kind.side_a()..kind.vertex_count()].iter().any(|v| self.reached.contains(v))
+        let mut others = pair.vertices[kind.side_a()..kind.vertex_count()].iter();
+        others.any(|&v| self.lengths[v as usize].is_finite())
     }
 
-    /// The vertices within `bound` [m] along edges, or within a few edges. Source: Dijkstra, "A note on two
+    /// Finds the vertices within `bound` [m] along edges, or within a few edges. Source: Dijkstra, "A note on two
     /// problems in connexion with graphs", 1959.
-    fn reach(&self, world: &World, x: &[Point], from: u32, bound: f64) -> FxHashSet<u32> {
+    fn reach(&mut self, world: &World, x: &[Point], from: u32, bound: f64) {
+        let Self { edges, lengths, reached, .. } = self;
         // Of vertices inside of solids the world alone has the places.
         let at = |v: u32| x.get(v as usize).unwrap_or(&world.positions[v as usize]);
-        let mut reached = FxHashSet::default();
+        reached.drain(..).for_each(|v| lengths[v as usize] = f64::INFINITY);
+        lengths[from as usize] = 0.0;
+        reached.push(from);
         // Lengths are not negative, so that their bits are in their order.
         let mut queue = BinaryHeap::from([Reverse((0.0_f64.to_bits(), from))]);
         while let Some(Reverse((length, v))) = queue.pop() {
-            if !reached.insert(v) {
+            let length = f64::from_bits(length);
+            if length > lengths[v as usize] {
                 continue;
             }
-            for &next in &self.edges[v as usize] {
-                let sum = f64::from_bits(length) + (at(v) - at(next)).norm();
-                if sum <= bound && !reached.contains(&next) {
+            for &next in &edges[v as usize] {
+                let sum = length + (at(v) - at(next)).norm();
+                let known = &mut lengths[next as usize];
+                if sum <= bound && sum < *known {
+                    if known.is_infinite() {
+                        reached.push(next);
+                    }
+                    *known = sum;
                     queue.push(Reverse((sum.to_bits(), next)));
                 }
             }
         }
         let mut ring = vec![from];
         for _ in 0..NEIGHBOR_EDGES {
-            ring = ring.iter().flat_map(|&v| &self.edges[v as usize]).copied().collect();
+            ring = ring.iter().flat_map(|&v| &edges[v as usize]).copied().collect();
             ring.sort_unstable();
             ring.dedup();
-            reached.extend(&ring);
+            for &v in &ring {
+                if lengths[v as usize].is_infinite() {
+                    lengths[v as usize] = 0.0;
+                    reached.push(v);
+                }
+            }
         }
-        reached
     }
 }
 
