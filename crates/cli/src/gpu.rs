@@ -95,12 +95,11 @@ pub fn of_run(options: &RunOptions, scene: &Scene, folder: &Path) -> Result<Back
 
 /// Why the dynamics of a scene stay on the CPU where a device resolves its collisions; None if they need not.
 fn why_on_cpu(world: &World) -> Option<String> {
-    let names: Vec<String> = world.quadratic_bodies().map(|name| format!("\"{name}\"")).collect();
-    let first = names.first()?;
+    let (first, [what, instead]) = world.bodies_only_on_cpu().next()?;
+    let count = world.bodies_only_on_cpu().filter(|(_, [other, _])| *other == what).count();
     Some(format!(
-        "{} quadratic elements, which only the CPU computes (the first is {first}); with elements = \"linear\" the device \
-         computes the dynamics",
-        counted(names.len(), "body has", "bodies have")
+        "{} {what}, which only the CPU computes (the first is \"{first}\"); a device computes {instead}",
+        counted(count, "body has", "bodies have")
     ))
 }
 

@@ -51,6 +51,14 @@ pub enum BodyShape {
         /// Their material.
         material: StrandMaterial,
     },
+    /// Strands that resist twist, see [`StrandMaterial::twist_stiffness`].
+    Rods {
+        /// Their edges, each with its frame point, which shows how it is turned about itself: beside its middle, where
+        /// [`bowknot_geometry::add_frame_points`] puts it.
+        edges: Vec<[u32; 3]>,
+        /// Their material.
+        material: StrandMaterial,
+    },
     /// Grains.
     Particles {
         /// Its vertices, one per grain.
@@ -91,6 +99,11 @@ impl Body {
         Self::new(name, BodyShape::Strands { edges, material })
     }
 
+    /// Strands that resist twist, see [`BodyShape::Rods`].
+    pub fn rods(name: impl Into<String>, edges: Vec<[u32; 3]>, material: StrandMaterial) -> Self {
+        Self::new(name, BodyShape::Rods { edges, material })
+    }
+
     /// Grains, one per vertex.
     pub fn particles(name: impl Into<String>, vertices: Vec<u32>, material: ParticleMaterial) -> Self {
         Self::new(name, BodyShape::Particles { vertices, material })
@@ -109,16 +122,29 @@ impl Body {
 }
 
 impl BodyShape {
-    /// Calls `visit` with the vertices of every element: of a triangle, tet or edge, or a single vertex.
+    /// Calls `visit` with the vertices of every element: of a triangle, tet or edge (of a rod, with its frame point), or
+    /// a single vertex.
     pub fn for_each_element(&self, mut visit: impl FnMut(&[u32])) {
         match self {
             Self::Cloth { triangles, .. } => triangles.iter().for_each(|t| visit(t)),
             Self::Solid { tets, .. } => tets.iter().for_each(|t| visit(t)),
             Self::QuadraticSolid { tets, .. } => tets.iter().for_each(|t| visit(t)),
             Self::Strands { edges, .. } => edges.iter().for_each(|e| visit(e)),
+            Self::Rods { edges, .. } => edges.iter().for_each(|e| visit(e)),
             Self::Particles { vertices, .. } | Self::Obstacle { vertices } => {
                 vertices.iter().for_each(|v| visit(&[*v]));
             }
+        }
+    }
+
+    /// What of it the CPU alone computes, in words, and what it needs instead for a device.
+    pub fn only_on_cpu(&self) -> Option<[&'static str; 2]> {
+        match self {
+            Self::QuadraticSolid { .. } => {
+                Some(["quadratic elements", "linear ones (`elements = \"linear\"` in a scene)"])
+            }
+            Self::Rods { .. } => Some(["a twist stiffness", "`twist_stiffness = 0`"]),
+            _ => None,
         }
     }
 

@@ -69,6 +69,10 @@ impl DragSurfaces {
                 BodyShape::Strands { edges, material } => {
                     surfaces.edges.extend(edges.iter().map(|e| (e.map(node), material.radius)));
                 }
+                BodyShape::Rods { edges, material } => {
+                    let ends = edges.iter().map(|&[a, b, _]| [a, b].map(node));
+                    surfaces.edges.extend(ends.map(|nodes| (nodes, material.radius)));
+                }
                 BodyShape::Particles { vertices, material } => {
                     let section = std::f64::consts::PI * material.radius * material.radius;
                     surfaces.grains.extend(vertices.iter().map(|v| (node(*v), section)));

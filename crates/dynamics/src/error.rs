@@ -1,5 +1,6 @@
 //! Errors of models and of time steps. Each names the object and the place.
 
+use crate::body::Body;
 use bowknot_errors::ParamError;
 use bowknot_geometry::VertexOutOfRange;
 
@@ -100,6 +101,30 @@ pub enum ModelError {
         vertex: u32,
         /// Distance from the middle [m].
         off: f64,
+    },
+    /// A frame point of a rod is not beside the middle of its edge, at half of its length.
+    #[error(
+        "body \"{body}\": frame point {vertex} of edge {index} lies {off:e} m off its place beside the middle of the \
+         edge, at half of its length: see bowknot_geometry::add_frame_points"
+    )]
+    OffFrame {
+        /// Name of the body.
+        body: String,
+        /// The edge.
+        index: usize,
+        /// The frame point.
+        vertex: u32,
+        /// Distance along the edge or across it, the larger one [m].
+        off: f64,
+    },
+    /// A strand with a twist stiffness has no frame points.
+    #[error(
+        "body \"{body}\" has a twist stiffness and no frame points: make it of BodyShape::Rods, or set \
+         `twist_stiffness = 0`"
+    )]
+    NoFramePoints {
+        /// Name of the body.
+        body: String,
     },
     /// The warp direction is normal to triangles, so that it has no projection into them.
     #[error(
@@ -276,13 +301,14 @@ pub enum StepError {
         problem: &'static str,
     },
     /// A backend cannot compute a body, see [`crate::Dynamics::set_backend`].
-    #[error(
-        "body \"{body}\" has quadratic elements, which the CPU alone computes: give it linear ones \
-         (`elements = \"linear\"` in a scene)"
-    )]
-    QuadraticElements {
+    #[error("body \"{body}\" has {what}, which the CPU alone computes: give it {instead}")]
+    OnlyOnCpu {
         /// Name of the first such body.
         body: String,
+        /// What it has, see [`crate::BodyShape::only_on_cpu`].
+        what: &'static str,
+        /// What it needs instead.
+        instead: &'static str,
     },
     /// A custom element has computed something that is not finite, at a state that the time step passed
     /// through.
@@ -313,4 +339,12 @@ pub enum StepError {
     /// A Newton iteration was asked for before [`crate::Dynamics::begin_step`].
     #[error("newton_target was called before begin_step")]
     NotBegun,
+}
+
+impl StepError {
+    /// Why no device computes the dynamics of a body; None if it can.
+    pub fn only_on_cpu(body: &Body) -> Option<Self> {
+        let [what, instead] = body.shape.only_on_cpu()?;
+        Some(Self::OnlyOnCpu { body: body.name.clone(), what, instead })
+    }
 }

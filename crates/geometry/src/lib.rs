@@ -10,6 +10,7 @@
 pub mod bounds;
 mod collision_model;
 pub mod distance;
+mod frame_points;
 pub mod half_space;
 mod identity;
 pub mod intersection;
@@ -30,6 +31,7 @@ pub use nalgebra;
 pub use bounds::Aabb;
 pub use collision_model::{BodyFilter, CollisionModel, ModelError};
 pub use distance::Closest;
+pub use frame_points::{add_frame_points, carried_frame_point, transported};
 pub use half_space::HalfSpace;
 pub use identity::Identity;
 pub use mesh_check::{MeshProblem, check_mesh};

@@ -30,9 +30,8 @@ fn set_device(simulator: &mut Simulator, device: Option<usize>) -> PyResult<()> 
     let adapter = Adapter::choose(device).map_err(error::device)?;
     let engine = DeviceEngine::open(&adapter).map_err(error::device)?;
     let name = format!("gpu: {adapter}");
-    // The CPU computes the dynamics of quadratic elements.
-    let has_quadratic = simulator.world().quadratic_bodies().next().is_some();
-    let dynamics = (!has_quadratic).then(|| ConjugateGradients::new(name.clone(), engine.beside()));
+    let on_device = simulator.world().bodies_only_on_cpu().next().is_none();
+    let dynamics = on_device.then(|| ConjugateGradients::new(name.clone(), engine.beside()));
     simulator.set_backend(Box::new(Device::new(name, engine))).map_err(error::simulation)?;
     let dynamics = dynamics.map(|dynamics| Box::new(dynamics) as Box<dyn NewtonBackend>);
     simulator.set_dynamics_backend(dynamics).map_err(error::simulation)

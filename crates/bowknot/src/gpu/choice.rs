@@ -88,7 +88,7 @@ fn compare(
     if let Err(error) = on_device.set_backend(device) {
         return to_cpu(words(&error));
     }
-    if on_device.world().quadratic_bodies().next().is_none() {
+    if on_device.world().bodies_only_on_cpu().next().is_none() {
         on_device.set_dynamics_backend(dynamics)?;
     }
     let mut on_cpu = simulator(scene)?;

@@ -121,9 +121,9 @@ impl SimulationError {
     /// The dynamics has no target in a time step.
     pub(super) fn target(step: usize, source: StepError) -> Self {
         match source {
-            StepError::Backend { .. }
-            | StepError::QuadraticElements { .. }
-            | StepError::CustomElements { .. } => Self::Backend { step, source: Box::new(source) },
+            StepError::Backend { .. } | StepError::OnlyOnCpu { .. } | StepError::CustomElements { .. } => {
+                Self::Backend { step, source: Box::new(source) }
+            }
             source => Self::Target { step, source },
         }
     }

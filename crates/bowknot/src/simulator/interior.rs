@@ -10,10 +10,12 @@
 //!    Newton iteration of the time step's own energy, repeated while a tetrahedron is inverted, a few times
 //!    at most.
 //!
+//! The frame points of rods follow their edges without a turn.
+//!
 //! `docs/design-notes.md` has the figures by which the default was chosen.
 
 use bowknot_dynamics::{Dynamics, StepError};
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Point, Vector, carried_frame_point};
 use bowknot_scene::InteriorFollows;
 use bowknot_scene::world::World;
 
@@ -30,6 +32,8 @@ pub(super) struct Interior {
     first: usize,
     /// Tetrahedra with a vertex inside.
     tets: Vec<[u32; 4]>,
+    /// Edges of rods with their frame points.
+    rods: Vec<[u32; 3]>,
     /// Where the neighbors of each vertex inside begin, and the end.
     starts: Vec<u32>,
     neighbors: Vec<u32>,
@@ -55,10 +59,12 @@ impl Interior {
             .map(|v| pairs.partition_point(|pair| (pair[0] as usize) < v) as u32)
             .collect();
         let neighbors = pairs.iter().map(|pair| pair[1]).collect();
-        Self { method, first, tets, starts, neighbors, ..Self::default() }
+        let rods = world.bodies.iter().flat_map(|body| &body.rods).copied().collect();
+        Self { method, first, tets, rods, starts, neighbors, ..Self::default() }
     }
 
-    /// Moves the vertices inside, which are at their target `y`, to follow the surface at `x` [m].
+    /// Moves the vertices inside and frame points, which are at their target `y`, to follow the surface and the edges at
+    /// `x` [m].
     /// Returns the number of elastic solves.
     pub fn follow(
         &mut self,
@@ -68,6 +74,7 @@ impl Interior {
         x: &mut [Point],
     ) -> Result<usize, StepError> {
         let first = self.first;
+        carry_frame_points(&self.rods, prescribed, y, x);
         let moved = |v: &u32| (*v as usize) < first && x[*v as usize] != y[*v as usize];
         if !self.tets.iter().flatten().any(moved) {
             return Ok(0);
@@ -110,6 +117,15 @@ impl Interior {
         }
         for v in self.first..x.len() {
             x[v] = y[v] + correction[v];
+        }
+    }
+}
+
+/// Moves the frame points of `rods` but the `held` ones along with their edges, which were at `from` and are at `x` [m].
+pub(super) fn carry_frame_points(rods: &[[u32; 3]], held: &[bool], from: &[Point], x: &mut [Point]) {
+    for [a, b, p] in rods.iter().map(|rod| rod.map(|v| v as usize)) {
+        if !held[p] && (x[a] != from[a] || x[b] != from[b]) {
+            x[p] = carried_frame_point([&from[a], &from[b]], [&x[a], &x[b]], &from[p]);
         }
     }
 }

@@ -34,6 +34,8 @@ mod presence;
 mod presets;
 /// `docs/scene-reference.md` follows the structs.
 mod reference;
+/// Strands that resist twist: theory, pins, restarts.
+mod rods;
 /// Output folders: what they hold, resuming, failing.
 mod runs;
 /// The time-step loop: free motion, pins, obstacles, restarts, threads.

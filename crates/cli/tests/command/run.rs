@@ -172,7 +172,7 @@ fn the_cpu_computes_quadratic_elements_and_a_device_that_is_asked_for_them_is_re
         serde_json::from_str(&place.read(&format!("{run}/summary.json"))).unwrap()
     };
     let note = "the CPU computes the dynamics: 1 body has quadratic elements, which only the CPU computes (the \
-                first is \"beam\"); with elements = \"linear\"";
+                first is \"beam\"); a device computes linear ones (`elements = \"linear\"` in a scene)";
     for options in ["--backend gpu --frames 2", "--resume --frames 3"] {
         let ended = run(&format!("{options} --out run")).ok();
         assert_eq!(ended.stderr.matches(note).count(), 1, "{ended:#?}");

@@ -31,7 +31,6 @@ pub use newton::backend::{
     Trial, Watched,
 };
 
-use crate::body::{Body, BodyShape};
 use crate::custom::element::CustomElement;
 use crate::drag::DragSurfaces;
 use crate::elements::filter::Filter;
@@ -141,15 +140,14 @@ impl Dynamics {
     /// the preconditioner of the backend.
     ///
     /// # Errors
-    /// [`StepError::QuadraticElements`] if a body has them, [`StepError::CustomElements`] if there are any: the CPU then
-    /// computes the dynamics.
+    /// [`StepError::OnlyOnCpu`] if a body has what the CPU alone computes, [`StepError::CustomElements`] if there are custom
+    /// elements: the CPU then computes the dynamics.
     pub fn set_backend(&mut self, backend: Option<Box<dyn NewtonBackend>>) -> Result<(), StepError> {
         (self.device, self.course.on_device) = (None, None);
         self.work.cache.clear();
         let Some(backend) = backend else { return Ok(()) };
-        let is_quadratic = |body: &&Body| matches!(body.shape, BodyShape::QuadraticSolid { .. });
-        if let Some(body) = self.model.bodies().iter().find(is_quadratic) {
-            return Err(StepError::QuadraticElements { body: body.name.clone() });
+        if let Some(error) = self.model.bodies().iter().find_map(StepError::only_on_cpu) {
+            return Err(error);
         }
         if let Some(group) = self.model.element_groups().first() {
             return Err(StepError::CustomElements { group: group.name.clone() });

@@ -10,6 +10,7 @@
 //! | [`tetrahedron`] | strain of solids, with a law of [`solid_law`] |
 //! | [`quadratic`] | tetrahedra of linear strain, each four of constant strain |
 //! | [`strand`] | stretching and bending of strands |
+//! | [`rod`] | bending and twist of strands that resist twist |
 //! | [`svd`] | singular values of 3 x 3 matrices |
 
 pub(crate) mod bending;
@@ -17,6 +18,7 @@ pub(crate) mod element;
 pub(crate) mod filter;
 mod membrane;
 pub(crate) mod quadratic;
+pub(crate) mod rod;
 pub(crate) mod set;
 pub(crate) mod shell;
 mod solid_law;

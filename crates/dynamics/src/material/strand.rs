@@ -7,7 +7,7 @@ use bowknot_errors::{Checks, Parameters};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// A thin round rod that stretches and bends; it does not resist twist.
+/// A thin round rod that stretches and bends and, if it has a [`Self::twist_stiffness`], resists twist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
@@ -19,16 +19,21 @@ pub struct StrandMaterial {
     /// Young's modulus times second moment of area, EI [N m^2]: moment per curvature. Default: that of
     /// hair. 0: a thread.
     pub bend_stiffness: f64,
+    /// Shear modulus times polar moment of area, GJ [N m^2]: torque per twist per length, E I / (1 + nu) of a round rod.
+    /// Above 0 strands are rods: twist stores energy, ends and roots that are clamped hold it, and curls keep their shape.
+    /// The CPU alone computes them. That of hair is 3.6e-9 (0.89 GPa, Robbins, as for [`Self::hair`]). Default 0: strands
+    /// turn freely about themselves.
+    pub twist_stiffness: f64,
     /// Radius [m], for the drag by air, for contact and for pictures. Default: that of hair.
     pub radius: f64,
     /// Strain-rate damping [s]: viscous force = this times stiffness times strain rate. It conserves linear
     /// and angular momentum. Default 0.
     pub stretch_damping: f64,
     /// Bending-rate damping [s]: viscous moment = this times stiffness times curvature rate. It conserves
-    /// linear momentum, but slightly slows a bent strand that spins as a whole. Default 0.
+    /// linear momentum, but slightly slows a bent strand that spins as a whole, unless that resists twist. Default 0.
     pub bend_damping: f64,
     /// Shape without bending energy: `flat` is straight; `initial` has the angle at each vertex that the
-    /// strand has at the start, but not the plane of bending (there is no twist, and a curl may roll over).
+    /// strand has at the start and, if it resists twist, the planes of bending (without, a curl may roll over).
     /// Default `initial`.
     pub rest_shape: RestShape,
 }
@@ -52,6 +57,7 @@ impl StrandMaterial {
             density: density * area,
             stretch_stiffness: young_modulus * area,
             bend_stiffness: young_modulus * area * radius * radius / 4.0,
+            twist_stiffness: 0.0,
             radius,
             stretch_damping: 0.0,
             bend_damping: 0.0,
@@ -86,6 +92,7 @@ impl StrandMaterial {
             density: 1e-4,
             stretch_stiffness: 160.0,
             bend_stiffness: 3e-9,
+            twist_stiffness: 0.0,
             radius: 0.5e-3,
             stretch_damping: 0.0,
             bend_damping: 0.0,
@@ -100,6 +107,7 @@ impl StrandMaterial {
             density: 0.07,
             stretch_stiffness: 20e3,
             bend_stiffness: 0.02,
+            twist_stiffness: 0.0,
             radius: 5e-3,
             stretch_damping: 0.0,
             bend_damping: 0.0,
@@ -131,13 +139,17 @@ impl Parameters for StrandMaterial {
             density,
             stretch_stiffness,
             bend_stiffness,
+            twist_stiffness,
             radius,
             stretch_damping,
             bend_damping,
             rest_shape: _,
         } = *self;
         positive(checks, &[("density", density, "kg/m"), ("stretch_stiffness", stretch_stiffness, "N")]);
-        non_negative(checks, &[("bend_stiffness", bend_stiffness, "N m2")]);
+        non_negative(
+            checks,
+            &[("bend_stiffness", bend_stiffness, "N m2"), ("twist_stiffness", twist_stiffness, "N m2")],
+        );
         positive(checks, &[("radius", radius, "m")]);
         non_negative(
             checks,
@@ -177,15 +189,17 @@ mod tests {
             stretch_stiffness: -1.0,
             radius: f64::NAN,
             bend_stiffness: -1.0,
+            twist_stiffness: f64::INFINITY,
             stretch_damping: -1.0,
             bend_damping: -1.0,
             ..StrandMaterial::hair()
         };
         assert_eq!(
-            bad.validate().expect_err("all six are out of range").to_string(),
+            bad.validate().expect_err("all seven are out of range").to_string(),
             "density = 0 kg/m: must be finite and above 0\n\
              stretch_stiffness = -1 N: must be finite and above 0\n\
              bend_stiffness = -1 N m2: must be finite and at least 0\n\
+             twist_stiffness = inf N m2: must be finite and at least 0\n\
              radius = NaN m: must be finite and above 0\n\
              stretch_damping = -1 s: must be finite and at least 0\n\
              bend_damping = -1 s: must be finite and at least 0"

@@ -4,6 +4,7 @@ use crate::body::BodyShape;
 use crate::elements::bending::add_bending;
 use crate::elements::element::Element;
 use crate::elements::quadratic::QuadraticTetrahedron;
+use crate::elements::rod::{RodTurn, rod_elements};
 use crate::elements::set::{AnyElementSet, ElementKind, ElementSet};
 use crate::elements::shell::CurvedBends;
 use crate::elements::strand::{StrandEdge, StrandTurn, strand_elements};
@@ -26,6 +27,7 @@ pub(super) struct Assembly<'a> {
     quadratic: Vec<QuadraticTetrahedron>,
     strand_edges: Vec<StrandEdge>,
     strand_turns: Vec<StrandTurn>,
+    rod_turns: Vec<RodTurn>,
     edges: Vec<[u32; 2]>,
     bending: ScalarBuilder,
     bending_damping: ScalarBuilder,
@@ -54,6 +56,7 @@ impl<'a> Assembly<'a> {
             quadratic: Vec::new(),
             strand_edges: Vec::new(),
             strand_turns: Vec::new(),
+            rod_turns: Vec::new(),
             edges: Vec::new(),
             bending: ScalarBuilder::new(rest.len()),
             bending_damping: ScalarBuilder::new(rest.len()),
@@ -87,6 +90,13 @@ impl<'a> Assembly<'a> {
                 self.strand_edges.extend(springs);
                 self.strand_turns.extend(turns);
                 self.edges.extend(local.iter().map(|&[a, b]| [a.min(b), a.max(b)]));
+            }
+            BodyShape::Rods { edges, material } => {
+                let local: Vec<[u32; 3]> = edges.iter().map(|e| e.map(node)).collect();
+                let (springs, turns) = rod_elements(&local, self.rest, material);
+                self.strand_edges.extend(springs);
+                self.rod_turns.extend(turns);
+                self.edges.extend(local.iter().map(|&[a, b, _]| [a.min(b), a.max(b)]));
             }
             BodyShape::Particles { .. } | BodyShape::Obstacle { .. } => {}
         }
@@ -134,6 +144,7 @@ impl<'a> Assembly<'a> {
         push(&mut element_sets, ElementKind::Solid, self.quadratic);
         push(&mut element_sets, ElementKind::StrandStretching, self.strand_edges);
         push(&mut element_sets, ElementKind::StrandBending, self.strand_turns);
+        push(&mut element_sets, ElementKind::StrandBending, self.rod_turns);
         self.edges.sort_unstable();
         self.edges.dedup();
         let length = |[a, b]: [u32; 2]| (self.rest[a as usize] - self.rest[b as usize]).norm();

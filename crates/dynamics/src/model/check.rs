@@ -11,7 +11,8 @@ use std::collections::HashMap;
 /// cubed and of the largest coordinate.
 const ZERO: f64 = 1e-12;
 
-/// Farthest that a vertex may be from the middle of its edge, over the length of the edge.
+/// Farthest that a vertex may be from the middle of its edge, and a frame point from its place, over the length of the
+/// edge.
 const MIDDLE: f64 = 1e-6;
 
 /// Smallest angle between the warp and a triangle's normal [rad], below which the warp has no direction in
@@ -34,6 +35,11 @@ pub(super) fn check(positions: &[Point], bodies: &[Body]) -> Result<(), Errors<M
         for error in check_material(&body.shape).err().into_iter().flatten() {
             errors.push(ModelError::Material { body: body.name.clone(), error });
         }
+        if let BodyShape::Strands { material, .. } = &body.shape
+            && material.twist_stiffness > 0.0
+        {
+            errors.push(ModelError::NoFramePoints { body: body.name.clone() });
+        }
         check_indices(body, positions.len(), &mut errors);
     }
     check_shared(bodies, &mut errors);
@@ -47,7 +53,7 @@ fn check_material(shape: &BodyShape) -> Result<(), Errors<ParamError>> {
     match shape {
         BodyShape::Cloth { material, .. } => material.validate(),
         BodyShape::Solid { material, .. } | BodyShape::QuadraticSolid { material, .. } => material.validate(),
-        BodyShape::Strands { material, .. } => material.validate(),
+        BodyShape::Strands { material, .. } | BodyShape::Rods { material, .. } => material.validate(),
         BodyShape::Particles { material, .. } => material.validate(),
         BodyShape::Obstacle { .. } => Ok(()),
     }
@@ -57,7 +63,7 @@ fn element_name(shape: &BodyShape) -> &'static str {
     match shape {
         BodyShape::Cloth { .. } => "triangle",
         BodyShape::Solid { .. } | BodyShape::QuadraticSolid { .. } => "tet",
-        BodyShape::Strands { .. } => "edge",
+        BodyShape::Strands { .. } | BodyShape::Rods { .. } => "edge",
         BodyShape::Particles { .. } => "particle",
         BodyShape::Obstacle { .. } => "vertex",
     }
@@ -149,13 +155,38 @@ fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
             }
         }
         BodyShape::Strands { edges, .. } => {
-            for (index, &[a, b]) in edges.iter().enumerate() {
-                if (at(a) - at(b)).norm() <= ZERO * at(a).amax().max(at(b).amax()) {
-                    errors.push(ModelError::ZeroLength { body: body.name.clone(), index, a, b });
+            check_edges(body, positions, edges.iter().copied(), errors);
+        }
+        BodyShape::Rods { edges, .. } => {
+            check_edges(body, positions, edges.iter().map(|&[a, b, _]| [a, b]), errors);
+            for (index, &[a, b, p]) in edges.iter().enumerate() {
+                let (a, b, p_at) = (at(a), at(b), at(p));
+                let (edge, from_middle) = (b - a, p_at - (a + b) * 0.5);
+                let off = (from_middle.dot(&edge) / edge.norm())
+                    .abs()
+                    .max((from_middle.norm() - 0.5 * edge.norm()).abs());
+                if off > MIDDLE * edge.norm() {
+                    let name = body.name.clone();
+                    errors.push(ModelError::OffFrame { body: name, index, vertex: p, off });
                 }
             }
         }
         BodyShape::Particles { .. } | BodyShape::Obstacle { .. } => {}
+    }
+}
+
+/// Edges must have a length.
+fn check_edges(
+    body: &Body,
+    positions: &[Point],
+    edges: impl Iterator<Item = [u32; 2]>,
+    errors: &mut Vec<ModelError>,
+) {
+    let at = |v: u32| positions[v as usize].coords;
+    for (index, [a, b]) in edges.enumerate() {
+        if (at(a) - at(b)).norm() <= ZERO * at(a).amax().max(at(b).amax()) {
+            errors.push(ModelError::ZeroLength { body: body.name.clone(), index, a, b });
+        }
     }
 }
 

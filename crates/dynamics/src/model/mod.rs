@@ -222,7 +222,7 @@ impl DynamicsModel {
 
     /// Mass of each vertex [kg]: a third of the mass of its triangles, a quarter of the mass of its tets
     /// (1/32 of that of quadratic ones at a corner, 7/48 in the middle of an edge), half of the mass of its
-    /// strand edges, the mass of a grain; 0 for vertices of obstacles.
+    /// strand edges (of those of rods, a hundredth or more goes to the frame point), the mass of a grain; 0 for vertices of obstacles.
     pub fn masses(&self) -> &[f64] {
         &self.masses
     }
@@ -294,7 +294,9 @@ impl DynamicsModel {
 
     /// Whether some body is made of strands.
     pub(crate) fn has_strands(&self) -> bool {
-        self.bodies.iter().any(|body| matches!(body.shape, BodyShape::Strands { .. }))
+        self.bodies
+            .iter()
+            .any(|body| matches!(body.shape, BodyShape::Strands { .. } | BodyShape::Rods { .. }))
     }
 
     /// Mass of all deformable bodies [kg].

@@ -11,9 +11,7 @@ use bowknot_geometry::Vector;
 
 /// 63,000 vertices and 62,000 edges, after Fig. 7c and 7d of the paper: 1,000 locks of 100 hairs each, 30 cm
 /// long, stand out from the upper side of a ball of 10 cm radius, fall over it and swing as it shakes about
-/// the vertical, 70 degrees to either side. A lock stretches by a thousandth under its own weight, and by 2 %
-/// at most: the collision stage pushes vertices along a lock as easily as across, and what energy that stores
-/// grows with the stiffness, which a real lock has a thousand times as much of.
+/// the vertical, 70 degrees to either side. A lock has the stiffness of its hairs, and stretches by 2 % at most.
 pub(super) fn scene(scale: f64) -> Scene {
     let segments = (62.0 * scale).round().max(4.0) as usize;
     let count = (1000.0 * scale).round().max(8.0) as usize;
@@ -32,7 +30,7 @@ pub(super) fn scene(scale: f64) -> Scene {
         name: "hair".to_owned(),
         kind: BodyKind::Strands,
         shape: Some(Shape::Strands(strands)),
-        material: Material::Strands(StrandMaterial { stretch_stiffness: 2.0, ..StrandMaterial::lock() }),
+        material: Material::Strands(StrandMaterial::lock()),
         stretch_limit: Some(1.02),
         translate: Vector::new(0.0, 0.0, 0.5),
         ..BodySpec::default()

@@ -62,7 +62,7 @@ struct Assembly {
     half_spaces: Vec<HalfSpace>,
     half_space_names: Vec<String>,
     half_space_presence: Vec<Presence>,
-    /// Positions and velocities of vertices inside of each body.
+    /// Positions and velocities of vertices inside of each body, and of frame points.
     insides: Vec<(Vec<Point>, Vec<Vector>)>,
     warnings: Vec<String>,
 }
@@ -80,7 +80,7 @@ impl Assembly {
         )?;
         let mut part = part.into_body(body, &mut self.warnings)?;
         placing.place(&mut part.positions);
-        let mut velocities = initial_velocities(body, &part.positions);
+        let mut velocities = initial_velocities(body, &part.positions, part.rods.len());
 
         let outside = part.positions.len() - part.interior;
         self.insides.push((part.positions.split_off(outside), velocities.split_off(outside)));
@@ -88,6 +88,7 @@ impl Assembly {
         // Numbered within the part; those of the world follow when all of it is known.
         let (tets, quadratic_tets) =
             (std::mem::take(&mut part.tets), std::mem::take(&mut part.quadratic_tets));
+        let rods = std::mem::take(&mut part.rods);
         let (vertices, elements) = self.append(part, filter);
         self.velocities.extend(velocities);
         let shape = match body.material {
@@ -96,6 +97,9 @@ impl Assembly {
                 BodyShape::Solid { tets: Vec::new(), material }
             }
             Material::Solid(material) => BodyShape::QuadraticSolid { tets: Vec::new(), material },
+            Material::Strands(material) if !rods.is_empty() => {
+                BodyShape::Rods { edges: Vec::new(), material }
+            }
             Material::Strands(material) => BodyShape::Strands { edges: elements.strands.clone(), material },
             Material::Particles(material) => {
                 BodyShape::Particles { vertices: vertices.clone().collect(), material }
@@ -119,6 +123,7 @@ impl Assembly {
             interior: 0..0,
             tets,
             quadratic_tets,
+            rods,
             strands: elements.strands,
             surface: elements.surface,
             motion: ObstacleMotion::Rest,
@@ -174,6 +179,7 @@ impl Assembly {
             interior: 0..0,
             tets: Vec::new(),
             quadratic_tets: Vec::new(),
+            rods: Vec::new(),
             strands: elements.strands,
             surface: elements.surface,
             motion,
@@ -201,7 +207,7 @@ impl Assembly {
         (first..self.base.len() as u32, part)
     }
 
-    /// Appends the vertices inside of solids behind all others, and numbers tetrahedra.
+    /// Appends the vertices inside of solids and frame points behind all others, and numbers tetrahedra and rods.
     fn interior(&mut self) {
         for (index, (positions, velocities)) in std::mem::take(&mut self.insides).into_iter().enumerate() {
             let body = &mut self.bodies[index];
@@ -211,9 +217,11 @@ impl Assembly {
             let number = |v: &mut u32| *v = if *v < outside { *v + start } else { *v - outside + first };
             body.tets.iter_mut().flatten().for_each(number);
             body.quadratic_tets.iter_mut().flatten().for_each(number);
+            body.rods.iter_mut().flatten().for_each(number);
             match &mut self.models[index].shape {
                 BodyShape::Solid { tets, .. } => tets.clone_from(&body.tets),
                 BodyShape::QuadraticSolid { tets, .. } => tets.clone_from(&body.quadratic_tets),
+                BodyShape::Rods { edges, .. } => edges.clone_from(&body.rods),
                 _ => {}
             }
             self.positions.extend(positions);
@@ -306,14 +314,16 @@ fn motion(obstacle: &ObstacleSpec, placing: Placing) -> ObstacleMotion {
     }
 }
 
-/// Velocities of a body that moves as a rigid one [m/s].
-fn initial_velocities(body: &BodySpec, positions: &[Point]) -> Vec<Vector> {
+/// Velocities of a body that moves as a rigid one [m/s]. The last `frame_points` of its vertices have no part in its
+/// center.
+fn initial_velocities(body: &BodySpec, positions: &[Point], frame_points: usize) -> Vec<Vector> {
     let turn = body.angular_velocity.map(f64::to_radians);
     if turn == Vector::zeros() {
         return vec![body.velocity; positions.len()];
     }
-    let sum: Vector = positions.iter().map(|p| p.coords).sum();
-    let center = Point::from(sum / positions.len().max(1) as f64);
+    let own = &positions[..positions.len() - frame_points];
+    let sum: Vector = own.iter().map(|p| p.coords).sum();
+    let center = Point::from(sum / own.len().max(1) as f64);
     positions.iter().map(|p| body.velocity + turn.cross(&(p - center))).collect()
 }
 

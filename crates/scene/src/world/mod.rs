@@ -82,13 +82,16 @@ pub struct WorldBody {
     pub kind: Option<BodyKind>,
     /// Its vertices that collide.
     pub vertices: Range<u32>,
-    /// Its vertices inside of a solid.
+    /// Its vertices inside of a solid, or the frame points of its rods: what the dynamics alone knows.
     pub interior: Range<u32>,
     /// Its tetrahedra, of positive volume at time 0, if it is a solid; eight of each quadratic one.
     pub tets: Vec<[u32; 4]>,
     /// Its quadratic tetrahedra, if it is a solid of such: corners, then the middles of the edges 01, 02, 03,
     /// 12, 13, 23.
     pub quadratic_tets: Vec<[u32; 10]>,
+    /// Its edges with their frame points, if it is made of strands that resist twist, see
+    /// [`bowknot_geometry::add_frame_points`].
+    pub rods: Vec<[u32; 3]>,
     /// Its edges, if it is made of strands.
     pub strands: Vec<[u32; 2]>,
     /// What its mesh says about its faces, over its own vertices: polygons whose fans are its triangles.
@@ -99,7 +102,7 @@ pub struct WorldBody {
     pub motion: ObstacleMotion,
     /// When it is there, if it is an obstacle.
     pub presence: Presence,
-    /// Number in the mesh of each vertex, `vertices` first.
+    /// Number in the mesh of each vertex but frame points, `vertices` first.
     numbers: Vec<u32>,
     /// Vertices that the mesh has, those left out counted.
     mesh_vertices: usize,
@@ -114,16 +117,29 @@ impl WorldBody {
         })
     }
 
-    /// Its vertices, those inside of a solid last.
+    /// Its vertices, those inside of a solid and frame points last.
     pub fn all_vertices(&self) -> impl Iterator<Item = u32> + Clone + use<> {
         self.vertices.clone().chain(self.interior.clone())
     }
 
-    /// Its vertices in the order of the mesh that it was made of; none for those that no element names, which
+    /// The frame points of the edges whose ends are both among the vertices `held`, in ascending order, so that what holds
+    /// these holds their twist.
+    pub fn frame_points_between(&self, mut held: Vec<u32>) -> impl Iterator<Item = u32> + '_ {
+        held.sort_unstable();
+        let is_held = move |v: &u32| held.binary_search(v).is_ok();
+        self.rods.iter().filter(move |rod| rod[..2].iter().all(&is_held)).map(|rod| rod[2])
+    }
+
+    /// Its vertices but frame points, which its mesh does not have.
+    pub fn own_vertices(&self) -> impl Iterator<Item = u32> + Clone + use<> {
+        self.all_vertices().take(self.numbers.len())
+    }
+
+    /// Its vertices in the order of the mesh that it was made of, without frame points; none for those that no element names, which
     /// are left out.
     pub fn mesh_order(&self) -> Vec<Option<u32>> {
         let mut order = vec![None; self.mesh_vertices];
-        self.all_vertices().for_each(|v| order[self.mesh_number(v) as usize] = Some(v));
+        self.own_vertices().for_each(|v| order[self.mesh_number(v) as usize] = Some(v));
         order
     }
 
@@ -262,7 +278,7 @@ impl World {
         let deformable = |v: u32| (v as usize) < self.deformable_vertices;
         let (low, high) = self.bounds();
         SceneInfo {
-            vertices: self.positions.len() - self.obstacle_vertices(),
+            vertices: self.bodies.iter().filter(|b| b.kind.is_some()).map(|b| b.own_vertices().count()).sum(),
             edges: topology.edges.iter().filter(|e| deformable(e[0])).count(),
             triangles: topology.triangles.iter().filter(|t| deformable(t[0])).count(),
             tets: self.bodies.iter().map(|body| body.tets.len()).sum(),
@@ -279,20 +295,23 @@ impl World {
         }
     }
 
-    /// The names of bodies with quadratic elements, whose dynamics the CPU alone computes.
-    pub fn quadratic_bodies(&self) -> impl Iterator<Item = &str> {
-        let bodies = self.bodies.iter().filter(|body| !body.quadratic_tets.is_empty());
-        bodies.map(|body| body.name.as_str())
+    /// The names of the bodies whose dynamics the CPU alone computes, each with what it has and what it needs instead,
+    /// see [`bowknot_dynamics::BodyShape::only_on_cpu`].
+    pub fn bodies_only_on_cpu(&self) -> impl Iterator<Item = (&str, [&'static str; 2])> {
+        self.materials.iter().filter_map(|body| Some((body.name.as_str(), body.shape.only_on_cpu()?)))
     }
 
     /// The size of each body and of each obstacle with a mesh, in their order.
     pub fn sizes(&self) -> Vec<BodySize> {
         let size = |body: &WorldBody| {
-            let own =
-                [&body.vertices, &body.interior].map(|r| &self.positions[r.start as usize..r.end as usize]);
-            let (low, high) = bounds(&own.concat());
-            let vertices = own.iter().map(|part| part.len()).sum();
-            BodySize { kind: body.kind, name: body.name.clone(), vertices, extent: (high - low).into() }
+            let own: Vec<Point> = body.own_vertices().map(|v| self.positions[v as usize]).collect();
+            let (low, high) = bounds(&own);
+            BodySize {
+                kind: body.kind,
+                name: body.name.clone(),
+                vertices: own.len(),
+                extent: (high - low).into(),
+            }
         };
         self.bodies.iter().map(size).collect()
     }

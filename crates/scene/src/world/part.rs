@@ -5,11 +5,12 @@ use crate::body::BodySpec;
 use crate::elements::SolidElements;
 use crate::error::SceneError;
 use crate::kind::BodyKind;
+use crate::material::Material;
 use crate::shapes::Shape;
 use bowknot_errors::counted;
 use bowknot_geometry::{
-    MeshProblem, Point, TetFaults, add_edge_middles, boundary_triangles, check_mesh, check_tets,
-    divide_tetrahedron,
+    MeshProblem, Point, TetFaults, add_edge_middles, add_frame_points, boundary_triangles, check_mesh,
+    check_tets, divide_tetrahedron,
 };
 use bowknot_io::{self as io, Groups, Import, Mesh, Surface};
 use std::collections::{HashMap, HashSet};
@@ -26,16 +27,18 @@ pub(super) struct Part {
     pub tets: Vec<[u32; 4]>,
     pub quadratic_tets: Vec<[u32; 10]>,
     pub strands: Vec<[u32; 2]>,
+    /// The strands with their frame points, if they resist twist.
+    pub rods: Vec<[u32; 3]>,
     pub particles: Vec<u32>,
     /// What the mesh says about its faces: polygons whose fans are the triangles.
     pub surface: Option<Surface>,
     /// Groups of the mesh, by its numbers.
     pub groups: Groups,
-    /// Number in the mesh of each vertex.
+    /// Number in the mesh of each vertex but frame points.
     pub numbers: Vec<u32>,
     /// Vertices of the mesh, those left out counted.
     pub mesh_vertices: usize,
-    /// How many vertices, the last ones, are inside of a solid.
+    /// How many vertices, the last ones, are inside of a solid or frame points.
     pub interior: usize,
 }
 
@@ -160,7 +163,13 @@ impl Part {
                 self.choose_elements(spec, warnings);
                 self.split_surface();
             }
-            BodyKind::Strands => self.check_strands().map_err(fault)?,
+            BodyKind::Strands => {
+                self.check_strands().map_err(fault)?;
+                if matches!(spec.material, Material::Strands(material) if material.twist_stiffness > 0.0) {
+                    self.rods = add_frame_points(&mut self.positions, &self.strands);
+                    self.interior = self.rods.len();
+                }
+            }
             BodyKind::Particles => {}
         }
         let left_out = self.mesh_vertices - self.numbers.len();

@@ -38,6 +38,7 @@ pub(super) fn pins(
             vertices.extend(held);
             warnings.extend(warning.map(|warning| format!("{key} of {}: {warning}", spec.body)));
         }
+        vertices.extend(body.frame_points_between(vertices.clone()));
         vertices.sort_unstable();
         vertices.dedup();
         if vertices.is_empty() {
@@ -115,10 +116,10 @@ fn placed(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Vec<u32> {
     let at = |v: u32| &positions[v as usize];
     let mut vertices = Vec::new();
     if let Some(region) = &spec.region {
-        vertices.extend(body.all_vertices().filter(|&v| region.contains(at(v))));
+        vertices.extend(body.own_vertices().filter(|&v| region.contains(at(v))));
     }
     if let Some(side) = spec.side {
-        let own: Vec<Point> = body.all_vertices().map(|v| *at(v)).collect();
+        let own: Vec<Point> = body.own_vertices().map(|v| *at(v)).collect();
         let (low, high) = bounds(&own);
         let (axis, upper) = side.axis();
         // Vertices that rounding, by a rotation for instance, moved off the side belong to it.
@@ -127,7 +128,7 @@ fn placed(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Vec<u32> {
             let x = at(*v)[axis];
             if upper { x >= high[axis] - tolerance } else { x <= low[axis] + tolerance }
         };
-        vertices.extend(body.all_vertices().filter(on));
+        vertices.extend(body.own_vertices().filter(on));
     }
     vertices
 }

@@ -3,8 +3,8 @@
 use super::error::DriveError;
 use super::names::check;
 use crate::simulator::Simulator;
-use bowknot_geometry::Point;
 use bowknot_geometry::nalgebra::Isometry3;
+use bowknot_geometry::{Point, carried_frame_point};
 use bowknot_scene::world::{Pin, World};
 use std::sync::Arc;
 
@@ -39,6 +39,7 @@ impl Simulator {
         if held.is_empty() {
             return Err(DriveError::Empty { pin: pin() });
         }
+        held.extend(self.world.bodies[index].frame_points_between(held.clone()));
         let places: Vec<Point> = held.iter().map(|&v| self.positions[v as usize]).collect();
         let (start, end) = (self.time(), f64::INFINITY);
         let pin = Pin { name: pin(), vertices: held, motion: None, follow: None, start, end };
@@ -70,12 +71,14 @@ impl Simulator {
 
     /// Leads the vertices of a pin to `targets` at the end of the next time step, and holds them there [m];
     /// one target per vertex of the pin, in its order. It replaces the motion that the scene has for it, and
-    /// what it follows. The vertices go as one: each makes the same fraction of its way.
+    /// what it follows. The vertices go as one: each makes the same fraction of its way. The frame points of rods, which are
+    /// its last vertices, may be left out: they then follow their edges without a turn.
     ///
     /// # Errors
     /// No such pin, another number of targets, one that is not finite.
     pub fn set_pin_targets(&mut self, name: &str, targets: &[Point]) -> Result<(), DriveError> {
         let index = self.pin(name)?;
+        let targets = self.with_frame_points(index, targets);
         let pin = &self.world.pins[index];
         check("targets", name, pin.vertices.len(), targets.iter().map(|x| &x.coords))?;
         if !self.driven.grips.contains_key(name) {
@@ -84,7 +87,7 @@ impl Simulator {
         if pin.motion.is_some() || pin.follow.is_some() {
             self.change_pins(|world| (world.pins[index].motion, world.pins[index].follow) = (None, None));
         }
-        self.anchors[index] = targets.to_vec();
+        self.anchors[index] = targets;
         Ok(())
     }
 
@@ -98,6 +101,27 @@ impl Simulator {
         let grip = self.driven.grips.get(name).cloned().unwrap_or_else(|| self.places_of(index));
         let targets: Vec<Point> = grip.iter().map(|x| pose * x).collect();
         self.set_pin_targets(name, &targets)
+    }
+
+    /// The `targets` of a pin [m], with those of the frame points that it holds if they are left out.
+    fn with_frame_points(&self, pin: usize, targets: &[Point]) -> Vec<Point> {
+        let vertices = &self.world.pins[pin].vertices;
+        let mut all = targets.to_vec();
+        let rods = || self.world.bodies.iter().flat_map(|body| &body.rods);
+        if rods().next().is_none() || targets.len() >= vertices.len() {
+            return all;
+        }
+        let mut x = self.positions.clone();
+        vertices.iter().zip(targets).for_each(|(&v, target)| x[v as usize] = *target);
+        for &left_out in &vertices[targets.len()..] {
+            let Some([a, b, p]) = rods().find(|rod| rod[2] == left_out).map(|rod| rod.map(|v| v as usize))
+            else {
+                break;
+            };
+            let [from, to] = [&self.positions, &x].map(|x| [&x[a], &x[b]]);
+            all.push(carried_frame_point(from, to, &self.positions[p]));
+        }
+        all
     }
 
     /// Where the vertices of a pin are [m].

@@ -60,8 +60,8 @@ impl Simulator {
             let source = StepError::CustomElements { group: group.name.clone() };
             return Err(SimulationError::target(self.step, source));
         }
-        if let Some(body) = next.world.quadratic_bodies().next().filter(|_| has_backend) {
-            let source = StepError::QuadraticElements { body: body.to_owned() };
+        let bodies = next.dynamics.model().bodies();
+        if let Some(source) = bodies.iter().find_map(StepError::only_on_cpu).filter(|_| has_backend) {
             return Err(SimulationError::target(self.step, source));
         }
         let home =

@@ -6,6 +6,7 @@ use super::names::{check, in_mesh_order};
 use crate::simulator::Simulator;
 use crate::simulator::contact_forces::{CarriedContacts, vertices_of};
 use crate::simulator::error::SimulationError;
+use crate::simulator::interior::carry_frame_points;
 use bowknot_constraints::Feature;
 use bowknot_geometry::{Point, Vector};
 use std::sync::Arc;
@@ -21,6 +22,9 @@ impl Simulator {
         let count = self.world.bodies[index].mesh_order().len();
         check("velocities", body, count, velocities.iter())?;
         in_mesh_order(&self.world, index, velocities).for_each(|(v, given)| self.velocities[v] = *given);
+        for [a, b, p] in self.world.bodies[index].rods.iter().map(|rod| rod.map(|v| v as usize)) {
+            self.velocities[p] = (self.velocities[a] + self.velocities[b]) * 0.5;
+        }
         self.push(&[index]);
         Ok(())
     }
@@ -41,6 +45,8 @@ impl Simulator {
         check("positions", name, count, positions.iter().map(|x| &x.coords))?;
         let before = self.positions.clone();
         in_mesh_order(&self.world, index, positions).for_each(|(v, x)| self.positions[v] = *x);
+        let held = vec![false; before.len()];
+        carry_frame_points(&self.world.bodies[index].rods, &held, &before, &mut self.positions);
         let carried = self.carried();
         let kept = self.without_contacts_of(index, &carried);
         let placed = self.refuse_intersections(name).and_then(|()| self.take_out(kept));
