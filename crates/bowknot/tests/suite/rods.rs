@@ -2,8 +2,10 @@
 
 use super::scene;
 use bowknot::check::StateOptions;
+use bowknot::dynamics::StrandMaterial;
 use bowknot::geometry::nalgebra::{Isometry3, Rotation3, Translation3};
 use bowknot::geometry::{Point, Vector};
+use bowknot::scene::Material;
 use bowknot::{Simulator, StepStatistics};
 use std::f64::consts::PI;
 
@@ -183,6 +185,19 @@ fn frame_points_are_nobodys_vertices_but_pins_hold_and_lead_them() {
     simulator.place("rod", &moved).expect("nothing is there");
     let after = simulator.positions()[simulator.positions().len() - 1];
     assert!((after - before - Vector::new(0.1, 0.2, 0.3)).norm() < 1e-12);
+}
+
+#[test]
+fn twist_stiffness_changes_but_neither_begins_nor_ends_while_a_simulation_runs() {
+    let mut simulator = simulator(&straight("", ""));
+    let material = |twist_stiffness: f64| {
+        Material::Strands(StrandMaterial { twist_stiffness, ..StrandMaterial::straw() })
+    };
+    simulator.set_material("rod", material(2e-3)).expect("another stiffness");
+    run(&mut simulator, 2);
+    let error = simulator.set_material("rod", material(0.0)).expect_err("no twist");
+    assert!(error.to_string().contains("neither begin nor end"), "{error}");
+    run(&mut simulator, 2);
 }
 
 /// Locks that fall onto a ball, hold each other and twist: judged, and the same bits on two threads and after a restart.

@@ -99,6 +99,13 @@ fn world_of(scene: &Scene, before: &Scene, world_before: &World) -> Result<World
     let mut world = World::new(scene)?;
     for now in world.bodies.iter().filter(|now| is_same(&now.name, [scene, before])) {
         let Some(then) = world_before.bodies.iter().find(|then| then.name == now.name) else { continue };
+        if now.rods.len() != then.rods.len() {
+            return Err(SceneError::Model(format!(
+                "body {}: its twist_stiffness is 0 or is not from the start on: it can change while a simulation runs, but \
+                 neither begin nor end",
+                now.name
+            )));
+        }
         if (now.vertices.len(), now.interior.len()) != (then.vertices.len(), then.interior.len()) {
             return Err(SceneError::Model(format!("the mesh of {} has changed since the start", now.name)));
         }
