@@ -107,11 +107,11 @@ class Job:
             self._restore(simulator)
         self.folder.mkdir(parents=True, exist_ok=True)
         caches = self._caches()
+        state = simulator.checkpoint()
         try:
             if not self._resume:
                 for body in description.bodies:
                     caches[body.name].add(_in_object(body, body.start, 0))
-            state = simulator.checkpoint()
             while self.done < self.total and not self._cancel.is_set():
                 if not self._frame(simulator, pins, settings.steps):
                     break
@@ -121,8 +121,9 @@ class Job:
                 state = simulator.checkpoint()
                 if self.done % _STATE_EVERY == 0:
                     self._keep(state)
-            self._keep(state)
         finally:
+            # Also of a failure: the frames before it are as good as ever.
+            self._keep(state)
             for cache in caches.values():
                 cache.close()
 

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bowknot in Blender: selected objects become cloth, soft solids, hair or obstacles, and a bake makes their motion."""
+
+from . import bake, operators, panel, properties
+
+
+def register() -> None:
+    properties.register()
+    operators.register()
+    panel.register()
+
+
+def unregister() -> None:
+    bake.stop()
+    panel.unregister()
+    operators.unregister()
+    properties.unregister()
