@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bakes as an artist makes them, in a Blender without a window."""
+
+import bpy
+import numpy as np
+import pytest
+from conftest import ball, caches, faces, group, sheet, world
+
+import bowknot
+from bowknot_blender import bake
+from bowknot_blender.core import pc2
+
+
+def clean(cloth, obstacles, frames):
+    """Whether what Blender shows is free of intersections in each frame."""
+    for frame in frames:
+        parts = [world(cloth, frame)] + [world(other) for other in obstacles]
+        offsets = np.cumsum([0] + [len(part) for part in parts])
+        triangles = [faces(obj) + offset for obj, offset in zip([cloth, *obstacles], offsets)]
+        solid = np.arange(offsets[-1]) >= len(parts[0])
+        if not bowknot.check(np.concatenate(parts), np.concatenate(triangles), obstacles=solid, distance=False):
+            return False
+    return True
+
+
+def test_cloth_on_a_moving_obstacle_is_clean_and_shown_as_baked(scene):
+    cloth = sheet(location=(0, 0, 0.6), rotation=(0, 0, 0.3))
+    obstacle = ball(location=(0, 0, 0.3))
+    obstacle.keyframe_insert("location", frame=1)
+    obstacle.location.x = 0.3
+    obstacle.keyframe_insert("location", frame=20)
+    assert bpy.ops.bowknot.bake() == {"FINISHED"}
+    samples = pc2.read(bake.folder(scene) / "sheet.pc2")
+    assert samples.shape == (20, 169, 3)
+    matrix = np.array(cloth.matrix_world)
+    for frame in (1, 7, 20):
+        expected = samples[frame - 1] @ matrix[:3, :3].T + matrix[:3, 3]
+        assert np.abs(world(cloth, frame) - expected).max() < 1e-5
+    assert np.abs(world(cloth, 1)[:, 2] - 0.6).max() < 1e-6
+    end = world(cloth, 20)
+    assert end[:, 2].min() < 0.3 and 0.53 < end[:, 2].max() < 0.6  # it lies on the ball
+    assert clean(cloth, [obstacle], range(1, 21))
+
+
+def test_pins_follow_their_vertices_and_nothing_else_does(scene):
+    cloth = sheet()
+    cloth.location.z = 1.0
+    cloth.keyframe_insert("location", frame=1)
+    cloth.location.x = 0.5
+    cloth.keyframe_insert("location", frame=20)
+    before = world(cloth, 1)
+    row = np.flatnonzero(before[:, 1] > 0.499)
+    group(cloth, "waist", row)
+    led = {frame: world(cloth, frame)[row] for frame in (5, 12, 20)}
+    bpy.ops.bowknot.bake()
+    for frame, places in led.items():
+        assert np.abs(world(cloth, frame)[row] - places).max() < 2e-5
+    free = np.setdiff1d(np.arange(len(before)), row)
+    lowest = [world(cloth, frame)[free, 2].min() for frame in range(1, 21)]
+    assert min(lowest) < 0.05, lowest  # the sheet, 1 m long, swings about the row
+
+
+def test_a_scene_in_centimeters_falls_as_one_in_meters(scene):
+    falls = []
+    for unit in (1.0, 0.01):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        scene = bpy.context.scene
+        scene.unit_settings.scale_length = unit
+        scene.frame_end = 10
+        cloth = sheet(size=1.0 / unit)
+        bpy.ops.bowknot.bake()
+        falls.append((world(cloth, 1) - world(cloth, 10))[:, 2].mean() * unit)
+    time, dt = 9 / 24, 1 / 48
+    assert falls[0] == pytest.approx(0.5 * 9.81 * time * (time + dt), rel=1e-4)  # of implicit Euler
+    assert falls[1] == pytest.approx(falls[0], rel=1e-5)
+
+
+def test_an_armature_moves_an_obstacle(scene):
+    bpy.ops.object.armature_add(location=(0, 0, 0))
+    rig = bpy.context.object
+    bpy.ops.mesh.primitive_cube_add(size=0.4, location=(0, 0, 0.5))
+    body = bpy.context.object
+    body.bowknot.role = "OBSTACLE"
+    body.vertex_groups.new(name="Bone").add(list(range(8)), 1.0, "REPLACE")
+    body.modifiers.new("Armature", "ARMATURE").object = rig
+    bone = rig.pose.bones["Bone"]
+    bone.keyframe_insert("location", frame=1)
+    bone.location = (0.0, 0.6, 0.0)  # along the bone, which points up
+    bone.keyframe_insert("location", frame=20)
+    scene.use_gravity = False
+    cloth = sheet(size=0.5, location=(0, 0, 0.75))
+    bpy.ops.bowknot.bake()
+    end = world(cloth, 20)
+    assert world(body)[:, 2].max() == pytest.approx(1.3, abs=1e-5)
+    assert np.abs(end[:, :2]).min(axis=1).max() < 0.26 and end[:, 2].min() > 1.29  # pushed up by 0.55 m
+    assert clean(cloth, [body], range(1, 21))
+
+
+def test_an_intersecting_start_selects_the_vertices(scene):
+    cloth = sheet(side=11, location=(0, 0, 0.31))
+    obstacle = ball(radius=0.3)
+    obstacle.location.z = 0.05
+    with pytest.raises(RuntimeError, match=r"The start intersects in frame 1: \d+ of ball, \d+ of sheet"):
+        bpy.ops.bowknot.bake()
+    assert bpy.context.mode == "EDIT_MESH"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    chosen = np.array([vertex.select for vertex in cloth.data.vertices])
+    places = world(cloth)
+    # Those of the squares that the rim of the cap goes through, and no others.
+    rim = np.sqrt(0.3**2 - 0.26**2)
+    assert chosen.any() and np.abs(np.linalg.norm(places[chosen, :2], axis=1) - rim).max() < 0.15
+    assert not chosen[np.linalg.norm(places[:, :2], axis=1) > rim + 0.15].any()
+    top = np.array([vertex.select for vertex in obstacle.data.vertices])
+    assert top.any() and world(obstacle)[top, 2].min() > 0.2
+    assert "sheet" in scene.bowknot.message and len(cloth.modifiers) == 0
+
+
+@pytest.mark.parametrize("stop", [3, 13])
+def test_cancel_and_resume_make_the_bits_of_a_whole_bake(scene, stop):
+    sheet(location=(0, 0, 0.6))
+    ball(location=(0.1, 0, 0.3))
+    bpy.ops.bowknot.bake()
+    whole = caches(scene)
+    going = bake.begin(bpy.context, resume=False)
+    while going.advance():
+        if going._job is not None and going._job.done >= stop:
+            going.cancel()
+    bake.finish(going)
+    part = caches(scene)["sheet.pc2"]
+    assert len(part) < len(whole["sheet.pc2"]) and "Canceled at frame" in scene.bowknot.message
+    assert bpy.ops.bowknot.resume() == {"FINISHED"}
+    assert caches(scene) == whole
+
+
+def test_a_longer_range_resumes_and_a_changed_object_does_not(scene):
+    cloth = sheet(location=(0, 0, 0.6))
+    obstacle = ball(location=(0.1, 0, 0.3))
+    bpy.ops.bowknot.bake()
+    whole = caches(scene)
+    scene.frame_end = 12
+    bpy.ops.bowknot.bake()
+    scene.frame_end = 20
+    bpy.ops.bowknot.resume()
+    assert caches(scene) == whole
+    obstacle.location.x += 0.01
+    with pytest.raises(RuntimeError, match="not those of the bake that stopped"):
+        bpy.ops.bowknot.resume()
+    assert caches(scene) == whole and [m.type for m in cloth.modifiers] == ["MESH_CACHE"]
+
+
+def test_shape_keys_show_what_the_cache_does(scene):
+    scene.frame_end = 8
+    cloth = sheet(location=(0, 0, 0.6))
+    ball(location=(0, 0, 0.3))
+    bpy.ops.bowknot.bake()
+    shown = {frame: world(cloth, frame) for frame in (1, 4, 8, 9)}
+    scene.bowknot.result = "KEYS"
+    bpy.ops.bowknot.bake()
+    assert len(cloth.modifiers) == 0 and len(cloth.data.shape_keys.key_blocks) == 9
+    for frame, places in shown.items():
+        assert np.abs(world(cloth, frame) - places).max() < 2e-6
+    middle = (world(cloth, 4) + world(cloth, 5)) / 2
+    scene.frame_set(4, subframe=0.5)
+    assert np.abs(world(cloth) - middle).max() < 2e-6
+    bpy.ops.bowknot.free()
+    assert cloth.data.shape_keys is None and not bake.folder(scene).exists()
+
+
+def test_subdivision_comes_after_the_cache_and_mirrors_are_refused(scene):
+    scene.frame_end = 4
+    cloth = sheet(side=6)
+    cloth.modifiers.new("Smooth", "SUBSURF").levels = 2
+    bpy.ops.bowknot.bake()
+    assert [modifier.type for modifier in cloth.modifiers] == ["MESH_CACHE", "SUBSURF"]
+    assert all(modifier.show_viewport for modifier in cloth.modifiers)
+    assert len(world(cloth, 4)) > 300 and world(cloth, 4)[:, 2].max() < -0.05
+    cloth.modifiers.new("Mirror", "MIRROR")
+    with pytest.raises(RuntimeError, match="sheet: the modifier Mirror changes what is simulated: apply it"):
+        bpy.ops.bowknot.bake()
+
+
+def test_a_mirrored_scaled_and_turned_object_keeps_its_place(scene):
+    scene.frame_end = 3
+    scene.use_gravity = False
+    cloth = sheet(location=(0.2, 0.1, 0.5), rotation=(0.5, 0.2, 1.0))
+    cloth.scale = (-0.5, 1.2, 0.8)
+    before = world(cloth, 1)
+    bpy.ops.bowknot.bake()
+    assert np.abs(world(cloth, 3) - before).max() < 1e-6
+
+
+def test_loose_vertices_stay_and_loose_edges_are_refused(scene):
+    scene.frame_end = 4
+    cloth = sheet(side=6)
+    cloth.data.vertices.add(1)
+    cloth.data.vertices[36].co = (0.0, 0.0, 2.0)
+    bpy.ops.bowknot.bake()
+    end = world(cloth, 4)
+    assert np.abs(end[36] - [0, 0, 2]).max() < 1e-6 and end[:36, 2].max() < -0.05
+    cloth.data.edges.add(1)
+    cloth.data.edges[-1].vertices = (0, 36)
+    cloth.data.update()
+    with pytest.raises(RuntimeError, match="1 edges belong to no face, and sewing is not simulated"):
+        bpy.ops.bowknot.bake()
+
+
+def hair(points):
+    curves = bpy.data.hair_curves.new("hair")
+    curves.add_curves([len(strand) for strand in points])
+    curves.attributes["position"].data.foreach_set("vector", np.concatenate(points).ravel())
+    obj = bpy.data.objects.new("hair", curves)
+    bpy.context.collection.objects.link(obj)
+    obj.bowknot.role = "HAIR"
+    return obj
+
+
+def test_hair_curves_hang_from_their_roots_on_a_head(scene):
+    head = ball("head", 0.1)
+    directions = np.array([vertex.co.normalized() for vertex in head.data.vertices])
+    directions = directions[directions[:, 2] > 0.5]
+    reach = np.linspace(0.1, 0.4, 12)
+    strands = hair([d * reach[:, None] for d in directions.astype(np.float32)])
+    strands.parent = head
+    head.keyframe_insert("location", frame=1)
+    head.location.x = 0.3
+    head.keyframe_insert("location", frame=20)
+    roots = np.arange(len(directions)) * 12
+    bpy.ops.bowknot.bake()
+    start, end = world(strands, 1), world(strands, 20)
+    assert np.abs(end[roots] - start[roots] - [0.3, 0, 0]).max() < 1e-5
+    lengths = np.linalg.norm(np.diff(end.reshape(-1, 12, 3), axis=1), axis=2)
+    assert np.abs(lengths / (reach[1] - reach[0]) - 1).max() < 0.11
+    assert end[11::12, 2].mean() < start[11::12, 2].mean() - 0.1
+    assert np.linalg.norm(end.reshape(-1, 12, 3)[:, 1:] - [0.3, 0, 0], axis=2).min() > 0.09
+    bpy.ops.bowknot.free()
+    assert len(strands.modifiers) == 0 and np.abs(world(strands, 1) - start).max() < 1e-6
+    assert not [obj for obj in bpy.data.objects if "Bowknot" in obj.name]
+
+
+def test_strands_of_edges_are_hair(scene):
+    mesh = bpy.data.meshes.new("rope")
+    mesh.from_pydata([(0.05 * i, 0, 1) for i in range(20)], [(i, i + 1) for i in range(19)], [])
+    rope = bpy.data.objects.new("rope", mesh)
+    bpy.context.collection.objects.link(rope)
+    rope.bowknot.role, rope.bowknot.hair, rope.bowknot.roots_on_skin = "HAIR", "yarn", False
+    bpy.ops.bowknot.bake()
+    assert np.abs(world(rope, 20)[:2] - [[0, 0, 1], [0.05, 0, 1]]).max() < 1e-6
+    lowest = [world(rope, frame)[19, 2] for frame in range(1, 21)]
+    assert min(lowest) < 0.15, lowest  # 0.95 m of yarn swing about the root
+
+
+def test_a_closed_mesh_is_a_solid_and_an_open_one_is_not(scene):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=0.2, location=(0, 0, 0.25))
+    jelly = bpy.context.object
+    jelly.name = "jelly"
+    jelly.bowknot.role, jelly.bowknot.solid = "SOLID", "jelly"
+    bpy.ops.mesh.primitive_plane_add(size=2)
+    floor = bpy.context.object
+    floor.bowknot.role = "OBSTACLE"
+    bpy.ops.bowknot.bake()
+    end = world(jelly, 20)
+    assert 0.0 < end[:, 2].min() < 0.02 and end[:, 2].max() < 0.44  # it sags
+    assert clean(jelly, [floor], range(1, 21))
+    bpy.ops.object.select_all(action="DESELECT")
+    jelly.select_set(True)
+    bpy.ops.bowknot.assign(role="CLOTH")
+    assert jelly.bowknot.role == "CLOTH"
+    opened = sheet("open", location=(0, 0, 2))
+    opened.bowknot.role = "SOLID"
+    with pytest.raises(RuntimeError, match="open: a solid needs a closed surface, and this one has 48 open edges"):
+        bpy.ops.bowknot.bake()
+
+
+def test_pins_sewn_to_a_body_go_with_it(scene):
+    body = ball(radius=0.2)
+    body.rotation_euler.z = 0.0
+    body.keyframe_insert("rotation_euler", frame=1)
+    body.rotation_euler.z = 0.5
+    body.keyframe_insert("rotation_euler", frame=20)
+    cloth = sheet(size=0.6, location=(0, 0, 0.22))
+    before = world(cloth, 1)
+    middle = np.flatnonzero(np.linalg.norm(before[:, :2], axis=1) < 0.06)
+    group(cloth, "crown", middle)
+    cloth.bowknot.pin_to = body
+    bpy.ops.bowknot.bake()
+    turn = np.array([[np.cos(0.5), -np.sin(0.5), 0], [np.sin(0.5), np.cos(0.5), 0], [0, 0, 1]])
+    assert np.abs(world(cloth, 20)[middle] - before[middle] @ turn.T).max() < 1e-5
+
+
+def test_shared_data_and_wrong_types_are_refused_with_a_remedy(scene):
+    cloth = sheet()
+    twin = bpy.data.objects.new("twin", cloth.data)
+    scene.collection.objects.link(twin)
+    twin.location.z = 1
+    twin.bowknot.role = "CLOTH"
+    with pytest.raises(RuntimeError, match="share their data: Object > Relations > Make Single User"):
+        bpy.ops.bowknot.bake()
+    bpy.data.objects.remove(twin)
+    bpy.ops.object.text_add()
+    bpy.context.object.bowknot.role = "CLOTH"
+    with pytest.raises(RuntimeError, match="a font cannot be cloth: Object > Convert > Mesh"):
+        bpy.ops.bowknot.bake()
