@@ -44,7 +44,9 @@ def manifest(wheels: list[Path]) -> str:
     text = (FOLDER / MANIFEST).read_text(encoding="utf-8")
     version = re.search(r'^version = "(.*)"$', text, re.MULTILINE).group(1)
     if versions != {version}:
-        raise SystemExit(f"{MANIFEST}: version {version}, but the wheels have {', '.join(sorted(versions))}: make them agree")
+        raise SystemExit(
+            f"{MANIFEST}: version {version}, but the wheels have {', '.join(sorted(versions))}: make them agree"
+        )
     own = "".join(f'  "./wheels/{wheel.name}",\n' for wheel in sorted(wheels))
     names = ", ".join(f'"{platform}"' for platform in platforms)
     return text.replace("[permissions]", f"platforms = [{names}]\nwheels = [\n{own}]\n\n[permissions]", 1)

@@ -206,8 +206,6 @@ def _files(names: list[str]) -> dict[str, str]:
 
 def _intersects(error: jobs.StartIntersects, first: int) -> str:
     counts = [f"{len(own)} of {name}" if len(own) > 0 else f"some of {name}" for name, own in error.places.items()]
-    advice = str(error).splitlines()[-1]
-    return (
-        f"The start intersects in frame {first}: {', '.join(counts)} (vertices), which are selected. Move them apart. "
-        f"{advice[:1].upper()}{advice[1:]}"
-    )
+    # The last line says how far what must go; the keys of scene files are nothing to an artist.
+    advice = str(error).splitlines()[-1].replace(", by `translate`", "")
+    return f"The start intersects in frame {first}: {', '.join(counts)} (vertices), which are selected. {advice}"

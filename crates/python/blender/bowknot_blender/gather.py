@@ -242,7 +242,11 @@ class _BodyTrack:
             if len(pinned) == 0:
                 raise Refused(f"{obj.name}: the vertex group {own.pins} has no vertex with a weight of 0.5 or more")
             return pinned
-        return np.sort(np.concatenate([strand[:2] for strand in self._strands])) if self._strands else np.zeros(0, np.int64)
+        return (
+            np.sort(np.concatenate([strand[:2] for strand in self._strands]))
+            if self._strands
+            else np.zeros(0, np.int64)
+        )
 
 
 class _ObstacleTrack:
@@ -332,7 +336,9 @@ def _chains(obj: bpy.types.Object) -> list[NDArray[np.int64]]:
     """The vertices of each chain of edges, from the end with the lowest index on."""
     mesh = obj.data
     if len(mesh.polygons) > 0:
-        raise Refused(f"{obj.name}: hair is a mesh of edges alone, and this one has faces: delete Only Faces, or make it Cloth")
+        raise Refused(
+            f"{obj.name}: hair is a mesh of edges alone, and this one has faces: delete Only Faces, or make it Cloth"
+        )
     edges = _integers(mesh.edges, "vertices", 2)
     if len(edges) == 0:
         raise Refused(f"{obj.name}: it has no edges; hair needs them")

@@ -35,7 +35,9 @@ class BOWKNOT_OT_assign(bpy.types.Operator):
             obj.bowknot.role = self.role
         others = len(context.selected_objects) - len(given)
         if others > 0:
-            self.report({"WARNING"}, f"{others} selected objects are no {' or '.join(types).lower()}: convert them first")
+            self.report(
+                {"WARNING"}, f"{others} selected objects are no {' or '.join(types).lower()}: convert them first"
+            )
         return {"FINISHED"} if given else {"CANCELLED"}
 
 

@@ -21,7 +21,9 @@ def check(obj: bpy.types.Object, kind: str) -> None:
     if kind != "KEYS":
         return
     if obj.type != "MESH":
-        raise Refused(f"{obj.name}: hair curves cannot have shape keys: set Result to Mesh Cache, or convert them to a mesh")
+        raise Refused(
+            f"{obj.name}: hair curves cannot have shape keys: set Result to Mesh Cache, or convert them to a mesh"
+        )
     keys = obj.data.shape_keys
     if keys is not None and any(not _is_ours(key) for key in keys.key_blocks[1:]):
         raise Refused(f"{obj.name}: it has shape keys of its own: set Result to Mesh Cache")

@@ -1,32 +1,52 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender without a window, with the extension, for each test an empty file in a folder of its own."""
+"""A Blender without a window, with the extension installed from its zip as users do, for each test an empty file in a
+folder of its own. The variable BOWKNOT_BLENDER_ZIP has the path of the zip."""
 
-import sys
-from pathlib import Path
+import os
+import tempfile
 
-import bpy
-import numpy as np
-import pytest
+_RESOURCES = tempfile.TemporaryDirectory(prefix="bowknot-blender-")
+# Before Blender starts, so that it leaves the extensions of whoever runs this alone.
+os.environ["BLENDER_USER_RESOURCES"] = _RESOURCES.name
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import bpy  # noqa: E402, I001
+import addon_utils  # noqa: E402, there once Blender is
+import numpy as np  # noqa: E402
+import pytest  # noqa: E402
 
-import bowknot_blender  # noqa: E402
+bpy.ops.wm.read_factory_settings(use_empty=True)
+addon_utils.enable("bl_pkg")
+bpy.ops.extensions.package_install_files(
+    filepath=os.environ["BOWKNOT_BLENDER_ZIP"], repo="user_default", enable_on_install=True
+)
 
 
 @pytest.fixture(scope="session", autouse=True)
 def extension():
-    bowknot_blender.register()
     yield
-    bowknot_blender.unregister()
+    # Blender's module crashes at its end if properties of Python are left.
+    addon_utils.disable("bl_ext.user_default.bowknot")
+    _RESOURCES.cleanup()
 
 
 @pytest.fixture
-def scene(tmp_path):
+def empty():
+    """Makes an empty file."""
+
+    def make():
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        bpy.context.scene.frame_end = 20
+        return bpy.context.scene
+
+    return make
+
+
+@pytest.fixture
+def scene(tmp_path, empty):
     """The scene of an empty file that is saved."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    made = empty()
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "test.blend"))
-    bpy.context.scene.frame_end = 20
-    return bpy.context.scene
+    return made
 
 
 def sheet(name="sheet", side=13, size=1.0, **place):
@@ -75,6 +95,6 @@ def group(obj, name, vertices):
 
 def caches(scene):
     """The bytes of the caches of a scene, by file."""
-    from bowknot_blender import bake
+    from bl_ext.user_default.bowknot import bake
 
     return {path.name: path.read_bytes() for path in sorted(bake.folder(scene).glob("*.pc2"))}

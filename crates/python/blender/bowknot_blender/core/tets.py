@@ -179,7 +179,9 @@ def _closed(triangles: Indices) -> None:
             "(Select > All by Trait > Non Manifold, then Face > Fill)"
         )
     if many > 0:
-        raise NotSolid(f"a solid needs a closed surface, and here {many} edges have more than two faces: remove the inner ones")
+        raise NotSolid(
+            f"a solid needs a closed surface, and here {many} edges have more than two faces: remove the inner ones"
+        )
 
 
 def _lattice(points: Floats, triangles: Indices, cell: float, seed: int) -> Floats:
@@ -191,7 +193,9 @@ def _lattice(points: Floats, triangles: Indices, cell: float, seed: int) -> Floa
     corners = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     lattice = np.concatenate([corners, corners + 0.5 * spacing])
     corners_of = points[triangles]
-    samples = np.concatenate([points, corners_of.mean(axis=1), 0.5 * (corners_of + np.roll(corners_of, 1, axis=1)).reshape(-1, 3)])
+    samples = np.concatenate(
+        [points, corners_of.mean(axis=1), 0.5 * (corners_of + np.roll(corners_of, 1, axis=1)).reshape(-1, 3)]
+    )
     kept = []
     for part in np.array_split(lattice, max(1, len(lattice) * len(samples) // 2_000_000)):
         away = part[:, None] - samples[None]
