@@ -2,6 +2,7 @@
 """Bakes as an artist makes them, in a Blender without a window."""
 
 import os
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from conftest import ball, caches, faces, group, sheet, world
 
 import bowknot
-from bl_ext.user_default.bowknot import bake
+from bl_ext.user_default.bowknot import bake, operators
 from bl_ext.user_default.bowknot.core import pc2
 
 
@@ -135,8 +136,38 @@ def test_cancel_and_resume_make_the_bits_of_a_whole_bake(scene, stop):
     bake.finish(going)
     part = caches(scene)["sheet.pc2"]
     assert len(part) < len(whole["sheet.pc2"]) and "Canceled at frame" in scene.bowknot.message
+    # The next day.
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
     assert bpy.ops.bowknot.resume() == {"FINISHED"}
-    assert caches(scene) == whole
+    assert caches(bpy.context.scene) == whole
+
+
+def test_the_interface_bakes_in_the_background_and_cancels(scene):
+    class Pressed(operators.BOWKNOT_OT_bake.__mro__[1]):
+        """Stands for the operator, which Blender alone can make: there are no timers without its window."""
+
+        told = None
+
+        def report(self, kind, message):
+            self.told = kind, message
+
+    cloth = sheet(location=(0, 0, 0.6))
+    press, tick, other = Pressed(), SimpleNamespace(type="TIMER"), SimpleNamespace(type="MOUSEMOVE")
+    quiet = SimpleNamespace(
+        event_timer_remove=lambda timer: None, progress_update=lambda x: None, progress_end=lambda: None, windows=[]
+    )
+    context = SimpleNamespace(window_manager=quiet)
+    going = bake.begin(bpy.context, resume=False)
+    assert not bpy.ops.bowknot.bake.poll() and bpy.ops.bowknot.cancel.poll()
+    seen = set()
+    while press.modal(context, other) == {"PASS_THROUGH"} and press.modal(context, tick) == {"PASS_THROUGH"}:
+        seen.add((going.what, round(going.progress, 3)))
+        if going.what == "Simulating" and going.progress > 0.2:
+            bpy.ops.bowknot.cancel()
+    assert press.told[0] == {"INFO"} and "Resume goes on from there" in press.told[1]
+    assert len([what for what, _ in seen if what == "Reading the animation"]) > 10
+    assert bake.running is None and [m.type for m in cloth.modifiers] == ["MESH_CACHE"]
 
 
 def test_a_longer_range_resumes_and_a_changed_object_does_not(scene):
