@@ -113,6 +113,8 @@ class Bake:
         self.message = f"Baked frames {first} to {reached}"
         if job.done < job.total:
             self.message = f"Canceled at frame {reached}: Resume goes on from there"
+        if _is_temporary(bpy.data.scenes[self._scene]):
+            self.message += ". The file is not saved: save it and bake again, or the cache is gone when Blender ends"
         if job.unsolved > 0:
             made = job.done * job.description.settings.steps
             self.message += (
@@ -185,11 +187,14 @@ def free(scene: bpy.types.Scene) -> int:
 
 def folder(scene: bpy.types.Scene) -> Path:
     """Where the caches of a scene are."""
-    given = scene.bowknot.folder or "//bowknot"
-    if given.startswith("//") and not bpy.data.filepath:
-        # Of a file that is not saved, which has no folder: gone when Blender ends.
+    if _is_temporary(scene):
         return Path(bpy.app.tempdir) / "bowknot" / bpy.path.clean_name(scene.name)
-    return Path(bpy.path.abspath(given)).resolve() / bpy.path.clean_name(scene.name)
+    return Path(bpy.path.abspath(scene.bowknot.folder or "//bowknot")).resolve() / bpy.path.clean_name(scene.name)
+
+
+def _is_temporary(scene: bpy.types.Scene) -> bool:
+    """Whether the folder is that of a file that is not saved, which has none."""
+    return not bpy.data.filepath and (scene.bowknot.folder or "//").startswith("//")
 
 
 def _files(names: list[str]) -> dict[str, str]:

@@ -34,6 +34,9 @@ def members(scene: bpy.types.Scene) -> tuple[list[bpy.types.Object], list[bpy.ty
         raise Refused("nothing is simulated: select objects and press Cloth, Solid or Hair")
     for obj in found:
         role = obj.bowknot.role
+        if not obj.visible_get():
+            # Blender evaluates nothing of it: it would be simulated without its modifiers and animation.
+            raise Refused(f"{obj.name}: it is hidden, or its collection is: show it, or set its role to None")
         types = {"HAIR": {"MESH", "CURVES"}}.get(role, {"MESH"})
         if obj.type not in types:
             remedy = "Object > Convert > " + ("Hair Curves" if role == "HAIR" else "Mesh")

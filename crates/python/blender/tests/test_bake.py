@@ -10,7 +10,7 @@ import pytest
 from conftest import ball, caches, faces, group, sheet, world
 
 import bowknot
-from bl_ext.user_default.bowknot import bake, operators
+from bl_ext.user_default.bowknot import bake, operators, panel
 from bl_ext.user_default.bowknot.core import pc2
 
 
@@ -338,3 +338,54 @@ def test_shared_data_and_wrong_types_are_refused_with_a_remedy(scene):
     bpy.context.object.bowknot.role = "CLOTH"
     with pytest.raises(RuntimeError, match="a font cannot be cloth: Object > Convert > Mesh"):
         bpy.ops.bowknot.bake()
+
+
+def test_what_is_hidden_is_refused_and_an_unsaved_file_warned_of(empty):
+    scene = empty()
+    scene.frame_end = 2
+    cloth = sheet()
+    bpy.ops.bowknot.bake()
+    assert scene.bowknot.message.startswith("Baked frames 1 to 2. The file is not saved")
+    cloth.hide_viewport = True
+    with pytest.raises(RuntimeError, match="sheet: it is hidden, or its collection is: show it"):
+        bpy.ops.bowknot.bake()
+
+
+@pytest.mark.parametrize("role", ["NONE", "CLOTH", "SOLID", "HAIR", "OBSTACLE"])
+def test_panels_show_properties_and_buttons_that_there_are(scene, role):
+    shown = []
+
+    class Layout:
+        """Takes what a panel draws, as Blender's layout does, of which there is none without a window."""
+
+        def prop(self, owner, name):
+            assert name in owner.bl_rna.properties
+            shown.append(name)
+
+        def prop_search(self, owner, name, where, among):
+            assert among in where.bl_rna.properties
+            self.prop(owner, name)
+
+        def operator(self, name, text=""):
+            space, own = name.split(".")
+            shown.append(getattr(getattr(bpy.ops, space), own).get_rna_type().name)
+            return SimpleNamespace()
+
+        def label(self, text):
+            shown.append(text)
+
+        def column(self):
+            return self
+
+        def row(self, align):
+            return self
+
+        def grid_flow(self, columns, even_columns, align):
+            return self
+
+    sheet().bowknot.role = role
+    scene.bowknot.message = "Baked frames 1 to 20"
+    for kind in (panel.BOWKNOT_PT_object, panel.BOWKNOT_PT_bake):
+        kind.draw(SimpleNamespace(layout=Layout()), bpy.context)
+    assert ("friction" in shown) == (role != "NONE") and ("pins" in shown) == (role in ("CLOTH", "SOLID", "HAIR"))
+    assert shown[-4:] == ["Bake", "Resume", "Free", "Baked frames 1 to 20"]
