@@ -7,11 +7,9 @@ from collections.abc import Iterator
 
 import bpy
 import numpy as np
-from mathutils import Vector
-from mathutils.bvhtree import BVHTree
 from numpy.typing import NDArray
 
-from . import stack
+from . import sewing, stack
 from .core.scene import Body, Description, Obstacle, Refused, Settings
 
 #: Density of air at room temperature [kg/m^3].
@@ -170,7 +168,8 @@ class _BodyTrack:
                 raise Refused(
                     f"{self.obj.name}: its pins follow {own.pin_to.name}, which is no obstacle: make it one, or clear Pin to"
                 )
-            frames = obstacles[own.pin_to.name].carry(self._start[self._led], len(frames))
+            surface = obstacles[own.pin_to.name]
+            frames = sewing.carried(self._start[self._led], surface.frames, surface.triangles)
         return Body(
             name=self.obj.name,
             kind=role,
@@ -258,48 +257,33 @@ class _ObstacleTrack:
     def __init__(self, obj: bpy.types.Object, graph: bpy.types.Depsgraph, unit: float) -> None:
         self.obj = obj
         self._unit = unit
-        places, self._triangles = self._evaluated(graph)
-        if len(self._triangles) == 0:
+        places, self.triangles = self._evaluated(graph)
+        if len(self.triangles) == 0:
             raise Refused(f"{obj.name}: it has no faces; an obstacle needs them")
-        self._frames = [places]
+        self.frames = [places]
 
     def add(self, graph: bpy.types.Depsgraph, frame: int) -> None:
         """Adds the places in another frame."""
         places, triangles = self._evaluated(graph)
-        if not np.array_equal(triangles, self._triangles):
+        if not np.array_equal(triangles, self.triangles):
             raise Refused(
                 f"{self.obj.name}: its faces in frame {frame} are not those of the frames before: modifiers of an obstacle "
                 "must keep its faces"
             )
-        self._frames.append(places)
+        self.frames.append(places)
 
     def finish(self) -> Obstacle:
         """The obstacle of all frames."""
-        frames = np.array(self._frames)
+        frames = np.array(self.frames)
         if (frames == frames[:1]).all():
             frames = frames[:1]
         return Obstacle(
             name=self.obj.name,
             frames=frames,
-            triangles=self._triangles,
+            triangles=self.triangles,
             friction=float(self.obj.bowknot.friction),
             same_vertices=frames.shape[1] == len(self.obj.data.vertices),
         )
-
-    def carry(self, points: Floats, count: int) -> Floats:
-        """Where points go that are sewn to this surface in the first frame, shape (f, k, 3)."""
-        first = self._frames[0]
-        tree = BVHTree.FromPolygons([Vector(p) for p in first], self._triangles.tolist())
-        nearest = np.array([tree.find_nearest(Vector(point))[2] for point in points])
-        corners = self._triangles[nearest]
-        origin, axes = _triangle_frames(first[corners])
-        local = np.einsum("kji,kj->ki", axes, points - origin)
-        carried = []
-        for frame in range(count):
-            origin, axes = _triangle_frames(self._frames[frame][corners])
-            carried.append(origin + np.einsum("kij,kj->ki", axes, local))
-        carried[0] = points
-        return np.array(carried)
 
     def _evaluated(self, graph: bpy.types.Depsgraph) -> tuple[Floats, NDArray[np.int64]]:
         found = self.obj.evaluated_get(graph)
@@ -312,20 +296,11 @@ class _ObstacleTrack:
     def _faces(self, mesh: bpy.types.Mesh, matrix: Floats) -> NDArray[np.int64]:
         # The diagonals of a quad that bends may change with its shape, so those of the first frame stay.
         if hasattr(self, "_loops") and np.array_equal(_integers(mesh.loops, "vertex_index", 1), self._loops):
-            return self._triangles
+            return self.triangles
         self._loops = _integers(mesh.loops, "vertex_index", 1)
         triangles = _triangles(mesh)
         # A mirrored object has its outside within.
         return triangles[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else triangles
-
-
-def _triangle_frames(corners: Floats) -> tuple[Floats, Floats]:
-    """A corner of each triangle, and orthonormal axes of its plane and normal as columns."""
-    along = corners[:, 1] - corners[:, 0]
-    normal = np.cross(along, corners[:, 2] - corners[:, 0])
-    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    return corners[:, 0], np.stack([along, np.cross(normal, along), normal], axis=2)
 
 
 def _curves(obj: bpy.types.Object) -> list[NDArray[np.int64]]:

@@ -102,7 +102,8 @@ class Job:
         except bowknot.IntersectionError as error:
             raise StartIntersects(str(error), intersecting(description)) from error
         simulator.set_measured(False)
-        pins = dict(zip((body.name for body in description.bodies if len(body.held()) > 0), simulator.pins))
+        names = iter(simulator.pins)
+        pins = [(body, [next(names) for _ in body.held()]) for body in description.bodies]
         if self._resume:
             self._restore(simulator)
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -134,7 +135,7 @@ class Job:
             for body in self.description.bodies
         }
 
-    def _frame(self, simulator: bowknot.Simulator, pins: dict[str, str], steps: int) -> bool:
+    def _frame(self, simulator: bowknot.Simulator, pins: list[tuple[Body, list[str]]], steps: int) -> bool:
         """Makes the time steps of one frame; False if it was canceled meanwhile."""
         unsolved = 0
         for step in range(1, steps + 1):
@@ -144,11 +145,12 @@ class Job:
             for obstacle in self.description.obstacles:
                 if len(obstacle.frames) > 1:
                     simulator.set_obstacle_targets(obstacle.name, _between(obstacle.frames, self.done, share))
-            for body in self.description.bodies:
-                if body.name in pins:
+            for body, names in pins:
+                if names:
                     rows = np.searchsorted(body.led, body.held_vertices())
                     targets = _between(body.led_frames, self.done, share)[rows]
-                    simulator.set_pin_targets(pins[body.name], targets)
+                    for name, target in zip(names, targets):
+                        simulator.set_pin_targets(name, target[None])
             unsolved += not simulator.step().solved
         self.unsolved += unsolved
         return True

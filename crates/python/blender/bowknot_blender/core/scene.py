@@ -133,14 +133,32 @@ class Description:
 
 
 def build(description: Description) -> bowknot.Scene:
-    """The scene of the package. Pin number k holds the body that stands k-th among those with pins."""
+    """The scene of the package. It has a pin for each held vertex, in the order of the bodies and of `Body.held`: a pin
+    goes as one, so that a single vertex that something stops would hold up all others of its pin."""
     settings = description.settings
     if not description.bodies:
         raise Refused("nothing is simulated: select objects and make them Cloth, Solid or Hair")
     contact: dict[str, object] = {"preset": settings.preset}
     if settings.contact_distance > 0.0:
         contact["delta"] = settings.contact_distance
-    scene = bowknot.Scene(
+    bodies, pins = [], []
+    for body in description.bodies:
+        table: dict[str, object] = {"name": body.name, "material": body.material, "friction": body.friction}
+        table["kind"] = {"hair": "strands"}.get(body.kind, body.kind)
+        if body.thickness > 0.0:
+            table["thickness"] = body.thickness
+        if not body.self_collision:
+            table["self_collision"] = False
+        bodies.append({**table, **body.mesh()})
+        pins.extend({"body": body.name, "vertices": [vertex]} for vertex in body.held().tolist())
+    obstacles = [
+        {"name": obstacle.name, "mesh": obstacle.frames[0], "faces": obstacle.triangles, "friction": obstacle.friction}
+        for obstacle in description.obstacles
+    ]
+    return bowknot.Scene(
+        bodies,
+        obstacles,
+        pins,
         simulation={
             "frames": settings.frames * settings.steps,
             "dt": 1.0 / (settings.frame_rate * settings.steps),
@@ -150,19 +168,6 @@ def build(description: Description) -> bowknot.Scene:
         },
         contact=contact,
     )
-    for body in description.bodies:
-        keys: dict[str, object] = {"name": body.name, "material": body.material, "friction": body.friction}
-        keys["kind"] = {"hair": "strands"}.get(body.kind, body.kind)
-        if body.thickness > 0.0:
-            keys["thickness"] = body.thickness
-        if not body.self_collision:
-            keys["self_collision"] = False
-        scene.add_body(**body.mesh(), **keys)
-        if len(body.held()) > 0:
-            scene.add_pin(body.name, body.held())
-    for obstacle in description.obstacles:
-        scene.add_obstacle(obstacle.frames[0], obstacle.triangles, name=obstacle.name, friction=obstacle.friction)
-    return scene
 
 
 def intersecting(description: Description, limit: int = 100_000) -> dict[str, Indices]:
