@@ -97,7 +97,7 @@ class Settings:
 
     frames: int
     frame_rate: float
-    steps: int = 2
+    steps: int = 4
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
     preset: str = "fast"
     contact_distance: float = 0.0
