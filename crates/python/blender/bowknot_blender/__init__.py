@@ -8,10 +8,11 @@ def register() -> None:
     properties.register()
     operators.register()
     panel.register()
+    bake.register()
 
 
 def unregister() -> None:
-    bake.stop()
+    bake.unregister()
     panel.unregister()
     operators.unregister()
     properties.unregister()

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
+from bpy.app.handlers import persistent
 
 from . import places, results
 from .core import job as jobs
@@ -51,16 +52,23 @@ class Bake:
             self.message = str(error)
             return False
 
+    @property
+    def waiting(self) -> bool:
+        """Whether the other thread is at work, and there is nothing to do here but to wait for it."""
+        return self._job is not None
+
+    def close(self) -> None:
+        """Ends the bake now, with what is done."""
+        self.cancel()
+        if self._job is not None:
+            self._job.join()
+        self._work.close()
+
     def cancel(self) -> None:
         """Ends the bake soon; what is done stays."""
         self._canceled = True
         if self._job is not None:
             self._job.cancel()
-
-    def wait(self) -> None:
-        """Waits until the other thread has ended."""
-        if self._job is not None:
-            self._job.join()
 
     def _steps(self) -> Iterator[None]:
         scene = bpy.data.scenes[self._scene]
@@ -149,13 +157,22 @@ def finish(bake: Bake) -> None:
         scene.bowknot.message = bake.message
 
 
-def stop() -> None:
-    """Ends the bake that goes on, and waits for it."""
+@persistent
+def stop(*_: object) -> None:
+    """Ends the bake that goes on, if any, and waits for it: before another file is opened, for one."""
     global running
     if running is not None:
-        running.cancel()
-        running.wait()
+        running.close()
         running = None
+
+
+def register() -> None:
+    bpy.app.handlers.load_pre.append(stop)
+
+
+def unregister() -> None:
+    stop()
+    bpy.app.handlers.load_pre.remove(stop)
 
 
 def run(context: bpy.types.Context, *, resume: bool) -> Bake:
@@ -163,12 +180,10 @@ def run(context: bpy.types.Context, *, resume: bool) -> Bake:
     bake = begin(context, resume=resume)
     try:
         while bake.advance():
-            if bake._job is not None:
+            if bake.waiting:
                 time.sleep(0.01)
     finally:
-        if bake._job is not None and bake._job.running:  # Ctrl-C
-            bake.cancel()
-            bake.wait()
+        bake.close()  # Ctrl-C may have come
         finish(bake)
     return bake
 
@@ -210,7 +225,10 @@ def _files(names: list[str]) -> dict[str, str]:
 
 
 def _intersects(error: jobs.StartIntersects, first: int) -> str:
-    counts = [f"{len(own)} of {name}" if len(own) > 0 else f"some of {name}" for name, own in error.places.items()]
+    counts = [
+        f"{len(own)} of {name}" if len(own) > 0 else f"some that modifiers of {name} made"
+        for name, own in error.places.items()
+    ]
     # The last line says how far what must go; the keys of scene files are nothing to an artist.
     advice = str(error).splitlines()[-1].replace(", by `translate`", "")
-    return f"The start intersects in frame {first}: {', '.join(counts)} (vertices), which are selected. {advice}"
+    return f"The start intersects in frame {first}: {', '.join(counts)} (vertices, which are selected). {advice}"

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import time
+
 import bpy
 from bpy.props import EnumProperty
 
@@ -76,6 +78,10 @@ class _Baking:
             return {"PASS_THROUGH"}
         current = bake.running
         going = current is not None and current.advance()
+        # Blender's own work goes on in between, but most of the time is for reading the animation.
+        end = time.perf_counter() + 0.8 * _TICK
+        while going and not current.waiting and time.perf_counter() < end:
+            going = current.advance()
         for window in context.window_manager.windows:
             for area in window.screen.areas:
                 if area.type == "VIEW_3D":

@@ -12,9 +12,6 @@ def show(context: bpy.types.Context, places: dict[str, NDArray[np.int64]]) -> No
     """Selects vertices of objects, and nothing else, and goes to edit mode with them."""
     found = [(context.scene.objects[name], own) for name, own in places.items() if name in context.scene.objects]
     found = [(obj, own) for obj, own in found if len(own) > 0 and obj.visible_get()]
-    # One mode for all: that of meshes, unless curves alone intersect.
-    meshes = [entry for entry in found if entry[0].type == "MESH"]
-    found = meshes or found
     if not found:
         return
     if context.object is not None and context.object.mode != "OBJECT":
@@ -26,8 +23,12 @@ def show(context: bpy.types.Context, places: dict[str, NDArray[np.int64]]) -> No
             _select_mesh(obj.data, own)
         else:
             _select_curves(obj.data, own)
+    # Edit mode is for one type at a time: for meshes, if there are any.
+    meshes = [obj for obj, _ in found if obj.type == "MESH"]
+    shown = meshes or [obj for obj, _ in found]
+    for obj in shown:
         obj.select_set(True)
-    context.view_layer.objects.active = found[0][0]
+    context.view_layer.objects.active = shown[0]
     if meshes:
         context.tool_settings.mesh_select_mode = (True, False, False)
     bpy.ops.object.mode_set(mode="EDIT")

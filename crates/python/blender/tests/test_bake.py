@@ -107,7 +107,8 @@ def test_an_intersecting_start_selects_the_vertices(scene):
     obstacle = ball(radius=0.3)
     obstacle.location.z = 0.05
     with pytest.raises(
-        RuntimeError, match=r"start intersects in frame 1: \d+ of sheet, \d+ of ball .* move sheet by 0.04"
+        RuntimeError,
+        match=r"start intersects in frame 1: \d+ of sheet, \d+ of ball .vertices, which are selected.. .*move sheet by 0.04",
     ):
         bpy.ops.bowknot.bake()
     assert bpy.context.mode == "EDIT_MESH"
@@ -166,8 +167,20 @@ def test_the_interface_bakes_in_the_background_and_cancels(scene):
         if going.what == "Simulating" and going.progress > 0.2:
             bpy.ops.bowknot.cancel()
     assert press.told[0] == {"INFO"} and "Resume goes on from there" in press.told[1]
-    assert len([what for what, _ in seen if what == "Reading the animation"]) > 10
+    assert len([what for what, _ in seen if what == "Simulating"]) > 2
     assert bake.running is None and [m.type for m in cloth.modifiers] == ["MESH_CACHE"]
+
+
+def test_another_file_ends_a_bake(scene, empty):
+    cloth = sheet(location=(0, 0, 0.6))
+    cloth.modifiers.new("Smooth", "SUBSURF")
+    going = bake.begin(bpy.context, resume=False)
+    while going.advance() and not (going.waiting and going.progress > 0.1):
+        pass
+    empty()
+    assert bake.running is None and not going._job.running
+    sheet("other")
+    assert bpy.ops.bowknot.bake() == {"FINISHED"}
 
 
 def test_a_longer_range_resumes_and_a_changed_object_does_not(scene):
@@ -273,6 +286,18 @@ def test_hair_curves_hang_from_their_roots_on_a_head(scene):
     bpy.ops.bowknot.free()
     assert len(strands.modifiers) == 0 and np.abs(world(strands, 1) - start).max() < 1e-6
     assert not [obj for obj in bpy.data.objects if "Bowknot" in obj.name]
+
+
+def test_hair_that_begins_in_an_obstacle_is_selected(scene):
+    ball("head", 0.1)
+    points = [np.array([[x, 0, 0.3 - 0.05 * i] for i in range(8)], np.float32) for x in (0.0, 0.5)]
+    strands = hair(points)
+    with pytest.raises(RuntimeError, match="of hair, .* of head"):
+        bpy.ops.bowknot.bake()
+    chosen = np.zeros(16, bool)
+    strands.data.attributes[".selection"].data.foreach_get("value", chosen)
+    # It goes in at z = 0.1 and does not come out: the points at 0.1 and 0.05, perhaps the one above.
+    assert chosen[:8].any() and not chosen[8:].any() and not chosen[:3].any()
 
 
 def test_strands_of_edges_are_hair(scene):
