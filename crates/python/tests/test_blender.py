@@ -119,6 +119,20 @@ def test_a_start_that_intersects_names_its_vertices(tmp_path):
     assert not (tmp_path / "bake.json").exists()
 
 
+def test_a_pin_that_is_stopped_does_not_hold_up_the_others(tmp_path):
+    frames = 6
+    body = sheet(frames, height=0.5)
+    corners = np.array([0, 80])  # at x = y = -0.5 and at x = y = 0.5
+    way = body.start[corners] + np.linspace(0, 0.3, frames + 1)[:, None, None] * [0.0, 0.0, -1.0]
+    body = sheet(frames, height=0.5, pinned=corners, led=corners, led_frames=way)
+    box = bowknot.shape("box", size=[0.2, 0.2, 0.2], edge=0.1)
+    stop = Obstacle("box", box.vertices[None] + [-0.5, -0.5, 0.3], box.faces.astype(np.int64))
+    finished(jobs.Job(Description(Settings(frames, 24.0), [body], [stop]), tmp_path, FILES))
+    end = pc2.read(tmp_path / "sheet.pc2")[-1]
+    assert 0.4 < end[0, 2] < 0.42  # the box ends at 0.4; it would go to 0.2
+    assert np.abs(end[80] - way[-1, 1]).max() < 1e-6
+
+
 def test_loose_vertices_and_numbers_with_gaps_stay_in_order(tmp_path):
     frames = 3
     vertices, faces = grid(4, 0.5, 1.0)

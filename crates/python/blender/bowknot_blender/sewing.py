@@ -16,6 +16,9 @@ Floats = NDArray[np.float64]
 #: Most vertices of the patch of a point, and fewest.
 _MOST, _FEWEST = 48, 8
 
+#: How often a point that is too near is pushed: in a crease, away from one side is toward the other.
+_PUSHES = 4
+
 #: The share of its distance to the surface that a point keeps at least.
 _KEPT = 0.7
 
@@ -28,15 +31,19 @@ def carried(points: Floats, frames: Sequence[Floats], triangles: NDArray[np.int6
     """
     first = frames[0]
     patches, weights = _patches(points, first, triangles)
-    outside = _heights(points, first, triangles)[0]
+    outside = _heights(points, _tree(first, triangles))[0]
     places = np.empty((len(frames), *points.shape))
     for number, frame in enumerate(frames):
+        tree = _tree(frame, triangles)
         moved = _rigid(points, first[patches], frame[patches], weights)
-        height, foot, normal = _heights(moved, frame, triangles)
-        side = np.where(outside < 0.0, -1.0, 1.0)
-        least = _KEPT * np.abs(outside)
-        near = height * side < least
-        moved[near] = (foot + normal * (side * least)[:, None])[near]
+        for _ in range(_PUSHES):
+            height, foot, normal = _heights(moved, tree)
+            side = np.where(outside < 0.0, -1.0, 1.0)
+            least = _KEPT * np.abs(outside)
+            near = height * side < least
+            if not near.any():
+                break
+            moved[near] = (foot + normal * (side * least)[:, None])[near]
         places[number] = moved
     places[0] = points
     return places
@@ -76,9 +83,8 @@ def _rigid(points: Floats, before: Floats, after: Floats, weights: Floats) -> Fl
     return onto + np.einsum("ki,kij,kjl->kl", points - middle, left, right)
 
 
-def _heights(points: Floats, surface: Floats, triangles: NDArray[np.int64]) -> tuple[Floats, Floats, Floats]:
+def _heights(points: Floats, tree: BVHTree) -> tuple[Floats, Floats, Floats]:
     """Heights of points above a surface, below 0 within; the nearest places on it, and normals there."""
-    tree = _tree(surface, triangles)
     found = [tree.find_nearest(Vector(point)) for point in points]
     foot, normal = np.array([entry[0] for entry in found]), np.array([entry[1] for entry in found])
     away = points - foot

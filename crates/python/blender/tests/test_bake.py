@@ -217,6 +217,43 @@ def test_shape_keys_show_what_the_cache_does(scene):
     assert cloth.data.shape_keys is None and not bake.folder(scene).exists()
 
 
+@pytest.mark.parametrize("result", ["CACHE", "KEYS"])
+def test_an_armature_of_the_cloth_leads_its_pins_and_does_not_move_the_result_again(scene, result):
+    scene.frame_end = 10
+    bpy.ops.object.armature_add()
+    rig = bpy.context.object
+    bone = rig.pose.bones["Bone"]
+    bone.keyframe_insert("location", frame=1)
+    bone.location = (0.2, 0.0, 0.0)
+    bone.keyframe_insert("location", frame=10)
+    cloth = sheet(location=(0, 0, 1))
+    cloth.vertex_groups.new(name="Bone").add(list(range(169)), 1.0, "REPLACE")
+    cloth.modifiers.new("Rig", "ARMATURE").object = rig
+    cloth.modifiers.new("Smooth", "SUBSURF").levels = 0
+    group(cloth, "edge", range(13))
+    led = world(cloth, 10)[:13]
+    assert np.abs(led - world(cloth, 1)[:13] - [0.2, 0, 0]).max() < 1e-6
+    scene.bowknot.result = result
+    bpy.ops.bowknot.bake()
+    end = world(cloth, 10)
+    assert np.abs(end[:13] - led).max() < 2e-6
+    matrix = np.array(cloth.matrix_world)[:3, 3]
+    assert np.abs(end - pc2.read(bake.folder(scene) / "sheet.pc2")[9] - matrix).max() < 2e-6
+    kinds = [(modifier.type, modifier.show_render) for modifier in cloth.modifiers]
+    cached = [("ARMATURE", True), ("MESH_CACHE", True), ("SUBSURF", True)]
+    assert kinds == (cached if result == "CACHE" else [("ARMATURE", False), ("SUBSURF", True)])
+    bpy.ops.bowknot.bake()  # again, with the result in place
+    assert np.abs(world(cloth, 10) - end).max() < 1e-7
+    bpy.ops.bowknot.free()
+    assert [(m.type, m.show_viewport and m.show_render) for m in cloth.modifiers] == [
+        ("ARMATURE", True),
+        ("SUBSURF", True),
+    ]
+    cloth.modifiers.move(0, 1)
+    with pytest.raises(RuntimeError, match="the modifier Rig would deform the result again: move it above Smooth"):
+        bpy.ops.bowknot.bake()
+
+
 def test_subdivision_comes_after_the_cache_and_mirrors_are_refused(scene):
     scene.frame_end = 4
     cloth = sheet(side=6)
