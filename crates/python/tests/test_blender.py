@@ -170,7 +170,12 @@ def test_hair_and_solids_become_bodies_of_their_kinds():
     assert scene.dt == 0.01 and scene.frames == 20
     assert bowknot.Simulator(scene).mass_of("box") == pytest.approx(0.008 * 1020, rel=1e-9)
     assert description.bodies[1].held().tolist() == [0, 1]
-    assert "hair" in scene.to_toml() and info
+    assert info["vertices"] == len(box.vertices) + 5  # the first point of the strand belongs to no edge
+    # The contacts of each: a tenth of the edges, of hair about its thickness.
+    table = tomllib.loads(scene.to_toml())
+    assert table["contact"]["delta"] == 0.0005
+    deltas = {body["name"]: body["delta"] for body in table["body"]}
+    assert deltas["hair"] == 0.0005 and 0.01 < deltas["box"] < 0.015
 
 
 @pytest.mark.parametrize(

@@ -127,7 +127,7 @@ class Bake:
             made = job.done * job.description.settings.steps
             self.message += (
                 f". {job.unsolved} of {made} time steps were not solved to their tolerance: nothing intersects, but "
-                "motion may be off there; more Steps per Frame help"
+                "motion may be off there; more Steps per Frame may help"
             )
 
     def _attach(self, where: Path, files: dict[str, str]) -> None:

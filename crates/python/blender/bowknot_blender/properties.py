@@ -105,7 +105,8 @@ class BowknotScene(bpy.types.PropertyGroup):
     )
     contact_distance: FloatProperty(
         name="Contact Distance",
-        description="Distance at which contacts begin to press, in meters. 0: a tenth of the mean edge",
+        description="Distance at which contacts begin to press, in meters. 0: a tenth of the mean edge, "
+        "for hair about its thickness",
         default=0.0,
         min=0.0,
         soft_max=0.02,

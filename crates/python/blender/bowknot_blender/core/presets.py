@@ -12,6 +12,9 @@ class Preset(NamedTuple):
     material: str
     label: str
     description: str
+    #: Distance at which contacts of strands begin to press [m], about their thickness: a tenth of their edges, the
+    #: default of the package, would push the neighbors of a dense groom apart, whose roots hold them.
+    contact: float = 0.0
 
 
 CLOTH = (
@@ -31,9 +34,11 @@ SOLID = (
 )
 
 HAIR = (
-    Preset("lock", "Lock", "A strand stands for a lock of about a hundred hairs: what grooms for pictures need"),
-    Preset("hair", "Single Hair", "One human hair of 0.08 mm"),
-    Preset("yarn", "Yarn", "Wool and knitting yarn, limp"),
-    Preset("rope", "Rope", "Rope of 1 cm, heavy and stiff"),
-    Preset("straw", "Straw", "Straw, grass and bristles of 3 mm, stiff"),
+    Preset(
+        "lock", "Lock", "A strand stands for a lock of about a hundred hairs: what grooms for pictures need", 0.0005
+    ),
+    Preset("hair", "Single Hair", "One human hair of 0.08 mm", 0.0004),
+    Preset("yarn", "Yarn", "Wool and knitting yarn, limp", 0.001),
+    Preset("rope", "Rope", "Rope of 1 cm, heavy and stiff", 0.01),
+    Preset("straw", "Straw", "Straw, grass and bristles of 3 mm, stiff", 0.003),
 )

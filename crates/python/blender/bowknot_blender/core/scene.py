@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import bowknot
 
 from . import tets as tetrahedra
+from .presets import HAIR
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -139,8 +140,13 @@ def build(description: Description) -> bowknot.Scene:
     if not description.bodies:
         raise Refused("nothing is simulated: select objects and make them Cloth, Solid or Hair")
     contact: dict[str, object] = {"preset": settings.preset}
+    own: dict[str, float] = {}
     if settings.contact_distance > 0.0:
         contact["delta"] = settings.contact_distance
+    elif any(body.kind == "hair" for body in description.bodies):
+        # The contacts of hair are finer than those of all else: obstacles have those of the finest.
+        own = {body.name: _contact_distance(body) for body in description.bodies}
+        contact["delta"] = min(own.values())
     bodies, pins = [], []
     for body in description.bodies:
         table: dict[str, object] = {"name": body.name, "material": body.material, "friction": body.friction}
@@ -149,6 +155,8 @@ def build(description: Description) -> bowknot.Scene:
             table["thickness"] = body.thickness
         if not body.self_collision:
             table["self_collision"] = False
+        if body.name in own:
+            table["delta"] = own[body.name]
         bodies.append({**table, **body.mesh()})
         pins.extend({"body": body.name, "vertices": [vertex]} for vertex in body.held().tolist())
     obstacles = [
@@ -168,6 +176,15 @@ def build(description: Description) -> bowknot.Scene:
         },
         contact=contact,
     )
+
+
+def _contact_distance(body: Body) -> float:
+    """Distance at which contacts of a body begin to press: a tenth of its edges, of hair at most its thickness."""
+    corners = body.start[body.elements]
+    tenth = 0.1 * float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean())
+    if body.kind != "hair":
+        return tenth
+    return min([tenth, *(preset.contact for preset in HAIR if preset.material == body.material)])
 
 
 def intersecting(description: Description, limit: int = 100_000) -> dict[str, Indices]:
