@@ -34,10 +34,13 @@ def attach(obj: bpy.types.Object, cache: Path, first: int, kind: str) -> None:
     detach(obj)
     if kind == "KEYS":
         _attach_keys(obj, cache, first)
+        _keep_diagonals(obj, stack.leading(obj))
     elif obj.type == "CURVES":
         _attach_nodes(obj, cache, first)
     else:
-        _attach_cache(obj, cache, first, stack.leading(obj))
+        place = stack.leading(obj)
+        _attach_cache(obj, cache, first, place)
+        _keep_diagonals(obj, place + 1)
 
 
 def detach(obj: bpy.types.Object) -> None:
@@ -45,7 +48,7 @@ def detach(obj: bpy.types.Object) -> None:
     for modifier in [modifier for modifier in obj.modifiers if modifier.name.startswith(NAME)]:
         if modifier.type == "NODES":
             _remove_companion(modifier)
-        if modifier.type in ("MESH_CACHE", "NODES"):
+        if modifier.type in ("MESH_CACHE", "NODES", "TRIANGULATE"):
             obj.modifiers.remove(modifier)
     if obj.type == "MESH" and obj.data.shape_keys is not None:
         _detach_keys(obj)
@@ -69,6 +72,21 @@ def _attach_cache(obj: bpy.types.Object, cache: Path, first: int, place: int) ->
     modifier.frame_start = first
     modifier.interpolation = "LINEAR"
     modifier.forward_axis, modifier.up_axis = "POS_Y", "POS_Z"
+
+
+def _keep_diagonals(obj: bpy.types.Object, place: int) -> None:
+    """Shows the quads of a cloth cut as they were simulated. Blender would cut those that fold along their other diagonal,
+    through what lies near. Not ahead of a subdivision, which quads are made for."""
+    if obj.bowknot.role != "CLOTH" or any(m.type in ("SUBSURF", "MULTIRES") for m in obj.modifiers):
+        return
+    mesh = obj.data
+    mesh.calc_loop_triangles()
+    cut = {tuple(triangle.loops) for triangle in mesh.loop_triangles}
+    starts = [polygon.loop_start for polygon in mesh.polygons if polygon.loop_total == 4]
+    if starts and all((start, start + 1, start + 2) in cut for start in starts):
+        modifier = obj.modifiers.new(f"{NAME} Quads", "TRIANGULATE")
+        obj.modifiers.move(len(obj.modifiers) - 1, place)
+        modifier.quad_method = "FIXED"  # from the first corner to the third
 
 
 def _is_ours(key: bpy.types.ShapeKey) -> bool:

@@ -168,7 +168,7 @@ def test_the_interface_bakes_in_the_background_and_cancels(scene):
             bpy.ops.bowknot.cancel()
     assert press.told[0] == {"INFO"} and "Resume goes on from there" in press.told[1]
     assert len([what for what, _ in seen if what == "Simulating"]) > 2
-    assert bake.running is None and [m.type for m in cloth.modifiers] == ["MESH_CACHE"]
+    assert bake.running is None and [m.type for m in cloth.modifiers] == ["MESH_CACHE", "TRIANGULATE"]
 
 
 def test_another_file_ends_a_bake(scene, empty):
@@ -196,7 +196,7 @@ def test_a_longer_range_resumes_and_a_changed_object_does_not(scene):
     obstacle.location.x += 0.01
     with pytest.raises(RuntimeError, match="not those of the bake that stopped"):
         bpy.ops.bowknot.resume()
-    assert caches(scene) == whole and [m.type for m in cloth.modifiers] == ["MESH_CACHE"]
+    assert caches(scene) == whole and [m.type for m in cloth.modifiers] == ["MESH_CACHE", "TRIANGULATE"]
 
 
 def test_shape_keys_show_what_the_cache_does(scene):
@@ -207,7 +207,8 @@ def test_shape_keys_show_what_the_cache_does(scene):
     shown = {frame: world(cloth, frame) for frame in (1, 4, 8, 9)}
     scene.bowknot.result = "KEYS"
     bpy.ops.bowknot.bake()
-    assert len(cloth.modifiers) == 0 and len(cloth.data.shape_keys.key_blocks) == 9
+    assert [m.type for m in cloth.modifiers] == ["TRIANGULATE"]
+    assert len(cloth.data.shape_keys.key_blocks) == 9
     for frame, places in shown.items():
         assert np.abs(world(cloth, frame) - places).max() < 2e-6
     middle = (world(cloth, 4) + world(cloth, 5)) / 2
@@ -265,6 +266,25 @@ def test_subdivision_comes_after_the_cache_and_mirrors_are_refused(scene):
     cloth.modifiers.new("Mirror", "MIRROR")
     with pytest.raises(RuntimeError, match="sheet: the modifier Mirror changes what is simulated: apply it"):
         bpy.ops.bowknot.bake()
+
+
+def test_quads_that_fold_are_shown_cut_as_they_were_simulated(scene):
+    cloth = sheet(side=3)
+    drawn = {tuple(sorted(triangle)) for triangle in faces(cloth)}
+    scene.frame_end = 2
+    bpy.ops.bowknot.bake()
+    # A vertex folds over the diagonal of its quad, from 0 to 4: Blender would cut it the other way.
+    file = bake.folder(scene) / "sheet.pc2"
+    folded = pc2.read(file).astype(np.float64)
+    folded[1, 3] = (folded[1, 0] + folded[1, 4] + folded[1, 1]) / 3 + [0.0, 0.0, 0.01]
+    writer = pc2.Writer(file, 9)
+    for sample in folded:
+        writer.add(sample)
+    writer.close()
+    scene.frame_set(2)
+    assert {tuple(sorted(triangle)) for triangle in faces(cloth)} == drawn
+    cloth.modifiers["Bowknot Quads"].show_viewport = False
+    assert {tuple(sorted(triangle)) for triangle in faces(cloth)} != drawn
 
 
 def test_a_mirrored_scaled_and_turned_object_keeps_its_place(scene):
