@@ -119,6 +119,22 @@ def test_a_start_that_intersects_names_its_vertices(tmp_path):
     assert not (tmp_path / "bake.json").exists()
 
 
+@pytest.mark.parametrize("thickness", [0.0, 0.01])
+def test_a_cloth_keeps_its_thickness_from_an_obstacle(tmp_path, thickness):
+    body = sheet(12, height=0.33, side=17, thickness=thickness)
+    box = bowknot.shape("box", size=[0.6, 0.6, 0.2], edge=0.1)
+    table = Obstacle("table", box.vertices[None] + [0.0, 0.0, 0.2], box.faces.astype(np.int64))
+    finished(jobs.Job(Description(Settings(12, 24.0), [body], [table]), tmp_path, FILES))
+    end = pc2.read(tmp_path / "sheet.pc2")[-1].astype(np.float64)
+    faces = np.concatenate([body.elements, table.triangles + len(end)])
+    both = np.concatenate([end, table.frames[0]])
+    pairs = bowknot.search(both, faces, 0.05, obstacles=np.arange(len(both)) >= len(end))
+    across = (pairs.vertices >= len(end)).any(axis=1)  # not the cloth's own folds
+    gap = pairs.distances[across].min()
+    assert gap >= thickness - 1e-6 and gap < thickness + 0.012
+    assert end[:, 2].min() < 0.25  # the rim hangs
+
+
 def test_a_pin_that_is_stopped_does_not_hold_up_the_others(tmp_path):
     frames = 6
     body = sheet(frames, height=0.5)

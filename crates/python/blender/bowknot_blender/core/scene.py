@@ -140,13 +140,13 @@ def build(description: Description) -> bowknot.Scene:
     if not description.bodies:
         raise Refused("nothing is simulated: select objects and make them Cloth, Solid or Hair")
     contact: dict[str, object] = {"preset": settings.preset}
-    own: dict[str, float] = {}
+    finest: dict[str, float] = {}
     if settings.contact_distance > 0.0:
         contact["delta"] = settings.contact_distance
     elif any(body.kind == "hair" for body in description.bodies):
         # The contacts of hair are finer than those of all else: obstacles have those of the finest.
-        own = {body.name: _contact_distance(body) for body in description.bodies}
-        contact["delta"] = min(own.values())
+        finest = {body.name: _contact_distance(body) for body in description.bodies}
+        contact["delta"] = min(finest.values())
     bodies, pins = [], []
     for body in description.bodies:
         table: dict[str, object] = {"name": body.name, "material": body.material, "friction": body.friction}
@@ -155,13 +155,16 @@ def build(description: Description) -> bowknot.Scene:
             table["thickness"] = body.thickness
         if not body.self_collision:
             table["self_collision"] = False
-        if body.name in own:
-            table["delta"] = own[body.name]
+        if body.name in finest:
+            table["delta"] = finest[body.name]
         bodies.append({**table, **body.mesh()})
         pins.extend({"body": body.name, "vertices": [vertex]} for vertex in body.held().tolist())
+    # A pair keeps the mean of both, so that an obstacle without a thickness would halve that of a body.
+    thickness = max(body.thickness for body in description.bodies)
+    apart = {"thickness": thickness} if thickness > 0.0 else {}
     obstacles = [
-        {"name": obstacle.name, "mesh": obstacle.frames[0], "faces": obstacle.triangles, "friction": obstacle.friction}
-        for obstacle in description.obstacles
+        {"name": own.name, "mesh": own.frames[0], "faces": own.triangles, "friction": own.friction, **apart}
+        for own in description.obstacles
     ]
     return bowknot.Scene(
         bodies,
