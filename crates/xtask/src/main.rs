@@ -12,12 +12,14 @@
 //! | `soak` | draws collision problems for minutes or hours, and judges every accepted step |
 //! | `twins` | writes the CPU twins of the kernels from their shaders |
 //! | `wheel` | builds the Python package as a release uploads it |
+//! | `blender` | packs the extension for Blender, with the wheel in it |
 //! | `mutations` | makes mistakes in a copy of the code, and requires that the safety tests catch each |
 //!
 //! `cargo xtask help` prints the options.
 // A command for people and CI logs: printing is what it does.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod blender;
 mod bowknot;
 mod check;
 mod docs;
@@ -53,6 +55,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask mutations [NAME..]
        cargo xtask twins
        cargo xtask wheel [--test]
+       cargo xtask blender [--test] [WHEEL..]
        cargo xtask notebooks [NAME..]
 
 check     run what CI runs, in named steps: format, \
@@ -104,6 +107,9 @@ the CPU runs in place of each kernel, from crates/gpu/shader: after every change
           shader
 wheel     build the Python package as a release uploads it, in target/wheels; needs Python with venv
           --test        install it into an environment of its own and run its tests
+blender   pack the extension for Blender, in target/blender, with the wheels named, of other systems too, or with one that
+          it builds; needs Python with venv
+          --test        install the zip in Blender's module bpy (500 MB, Python 3.11) and run the extension's tests
 notebooks execute the notebooks of docs/notebooks, all or those named, with the wheel of this \
 commit, and write their outputs
           into them; needs Python with venv, and a graphics driver";
@@ -142,6 +148,11 @@ fn main() -> ExitCode {
         ["twins"] => twins::run(&workspace::root()),
         ["wheel"] => wheel::run(&workspace::root(), false),
         ["wheel", "--test"] => wheel::run(&workspace::root(), true),
+        ["blender", arguments @ ..]
+            if arguments.iter().all(|argument| *argument == "--test" || argument.ends_with(".whl")) =>
+        {
+            blender::run(&workspace::root(), arguments)
+        }
         ["notebooks", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             notebooks::run(&workspace::root(), names)
         }
