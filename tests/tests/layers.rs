@@ -83,6 +83,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("bowknot-render", &["bowknot-geometry"]),
     ("bowknot-cli", &["bowknot", "bowknot-render"]),
+    ("bowknot-capi", &["bowknot"]),
     ("bowknot-python", &["bowknot", "bowknot-render"]),
     ("twins", &[]),
     ("xtask", &[]),
