@@ -8,6 +8,7 @@
 
 #include <stdarg.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -34,19 +35,19 @@ typedef struct BowknotMesh {
   // x y z of each vertex at rest [m].
   const double *rest;
   // How many vertices there are.
-  uintptr_t vertices;
+  size_t vertices;
   // Three vertices for each triangle.
   const uint32_t *triangles;
   // How many triangles there are.
-  uintptr_t triangle_count;
+  size_t triangle_count;
   // Two vertices for each edge of strands.
   const uint32_t *edges;
   // How many such edges there are.
-  uintptr_t edge_count;
+  size_t edge_count;
   // Vertices that are grains.
   const uint32_t *particles;
   // How many grains there are.
-  uintptr_t particle_count;
+  size_t particle_count;
   // Mass of each vertex [kg]. NULL: all have the same.
   const double *masses;
   // Whether each vertex belongs to an obstacle, which goes to its targets as they are. NULL: none does.
@@ -54,7 +55,7 @@ typedef struct BowknotMesh {
   // Four numbers for each half-space: a normal and an offset [m]; what lies at n . x < offset is solid.
   const double *planes;
   // How many half-spaces there are.
-  uintptr_t plane_count;
+  size_t plane_count;
   // Coefficient of Coulomb friction of everything.
   double friction;
   // Contact distance [m]; 0: a share of the edges' length.
@@ -138,7 +139,7 @@ void bowknot_resolver_free(struct BowknotResolver *resolver);
 enum BowknotStatus bowknot_resolver_resolve(struct BowknotResolver *resolver,
                                             double *x,
                                             const double *y,
-                                            uintptr_t count,
+                                            size_t count,
                                             double time_step,
                                             struct BowknotResolved *resolved);
 
@@ -148,8 +149,8 @@ enum BowknotStatus bowknot_resolver_resolve(struct BowknotResolver *resolver,
 // The handle is that of a resolver; the array has so many entries; `intersections` points to a number.
 enum BowknotStatus bowknot_resolver_intersections(const struct BowknotResolver *resolver,
                                                   const double *x,
-                                                  uintptr_t count,
-                                                  uintptr_t *intersections);
+                                                  size_t count,
+                                                  size_t *intersections);
 
 // Contact distance [m]: pairs nearer than this press on each other. NaN for NULL.
 //
@@ -180,7 +181,7 @@ enum BowknotStatus bowknot_simulator_step(struct BowknotSimulator *simulator, st
 //
 // # Safety
 // The handle is null, for which there are none, or that of a simulation.
-uintptr_t bowknot_simulator_vertices(const struct BowknotSimulator *simulator);
+size_t bowknot_simulator_vertices(const struct BowknotSimulator *simulator);
 
 // Writes x y z of each vertex [m]. `count` is the room of the array, three numbers per vertex.
 //
@@ -188,7 +189,7 @@ uintptr_t bowknot_simulator_vertices(const struct BowknotSimulator *simulator);
 // The handle is that of a simulation; the array has that much room.
 enum BowknotStatus bowknot_simulator_positions(const struct BowknotSimulator *simulator,
                                                double *positions,
-                                               uintptr_t count);
+                                               size_t count);
 
 // Writes the velocities [m/s], as `bowknot_simulator_positions` does positions.
 //
@@ -196,7 +197,7 @@ enum BowknotStatus bowknot_simulator_positions(const struct BowknotSimulator *si
 // As for `bowknot_simulator_positions`.
 enum BowknotStatus bowknot_simulator_velocities(const struct BowknotSimulator *simulator,
                                                 double *velocities,
-                                                uintptr_t count);
+                                                size_t count);
 
 // Writes the vertices of the triangles, three for each, and how many numbers that are to `count`, which holds the room of
 // the array before. With NULL as `triangles` it only counts.
@@ -205,26 +206,26 @@ enum BowknotStatus bowknot_simulator_velocities(const struct BowknotSimulator *s
 // The handle is that of a simulation; `count` points to a number; the array is null or has that much room.
 enum BowknotStatus bowknot_simulator_triangles(const struct BowknotSimulator *simulator,
                                                uint32_t *triangles,
-                                               uintptr_t *count);
+                                               size_t *count);
 
 // Writes the vertices of the edges of strands, two for each, as `bowknot_simulator_triangles` does triangles.
 //
 // # Safety
 // As for `bowknot_simulator_triangles`.
-enum BowknotStatus bowknot_simulator_edges(const struct BowknotSimulator *simulator, uint32_t *edges, uintptr_t *count);
+enum BowknotStatus bowknot_simulator_edges(const struct BowknotSimulator *simulator, uint32_t *edges, size_t *count);
 
 // How many bodies and obstacles with a mesh there are.
 //
 // # Safety
 // The handle is null, for which there are none, or that of a simulation.
-uintptr_t bowknot_simulator_bodies(const struct BowknotSimulator *simulator);
+size_t bowknot_simulator_bodies(const struct BowknotSimulator *simulator);
 
 // Tells of the body or obstacle of an `index`.
 //
 // # Safety
 // The handle is that of a simulation; `body` points to a `BowknotBody`.
 enum BowknotStatus bowknot_simulator_body(const struct BowknotSimulator *simulator,
-                                          uintptr_t index,
+                                          size_t index,
                                           struct BowknotBody *body);
 
 // Adds a pin that holds `count` vertices of a body where they are. They are numbered as in the body's mesh, from 0.
@@ -235,7 +236,7 @@ enum BowknotStatus bowknot_simulator_add_pin(struct BowknotSimulator *simulator,
                                              const char *name,
                                              const char *body,
                                              const uint32_t *vertices,
-                                             uintptr_t count);
+                                             size_t count);
 
 // Leads the vertices of a pin to `targets` at the end of the next time step: x y z for each of its vertices [m], `count`
 // numbers together. They go there without cutting through anything, and wait where they cannot.
@@ -245,7 +246,7 @@ enum BowknotStatus bowknot_simulator_add_pin(struct BowknotSimulator *simulator,
 enum BowknotStatus bowknot_simulator_set_pin_targets(struct BowknotSimulator *simulator,
                                                      const char *name,
                                                      const double *targets,
-                                                     uintptr_t count);
+                                                     size_t count);
 
 // Removes a pin.
 //
@@ -260,7 +261,7 @@ enum BowknotStatus bowknot_simulator_remove_pin(struct BowknotSimulator *simulat
 enum BowknotStatus bowknot_simulator_set_obstacle_targets(struct BowknotSimulator *simulator,
                                                           const char *name,
                                                           const double *targets,
-                                                          uintptr_t count);
+                                                          size_t count);
 
 // Sets the acceleration of gravity [m/s^2].
 //
@@ -272,7 +273,7 @@ enum BowknotStatus bowknot_simulator_set_gravity(struct BowknotSimulator *simula
 //
 // # Safety
 // The handle is that of a simulation; `count` points to a number.
-enum BowknotStatus bowknot_simulator_intersections(const struct BowknotSimulator *simulator, uintptr_t *count);
+enum BowknotStatus bowknot_simulator_intersections(const struct BowknotSimulator *simulator, size_t *count);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -76,5 +76,5 @@ fn a_program_in_c_simulates_resolves_and_is_refused() {
     assert!(lines[3].ends_with("0 intersections, converged 1"), "{lines:?}");
     let leaf: f64 = lines[3]["leaf at ".len()..][..6].parse().expect("a height");
     assert!((0.005..=0.0101).contains(&leaf), "{lines:?}");
-    assert!(lines[4].starts_with("refused: x: 1 pair intersects at the start"), "{lines:?}");
+    assert!(lines[4].starts_with("refused: x: 2 pairs intersect at the start"), "{lines:?}");
 }
