@@ -12,6 +12,7 @@
 //! | `soak` | draws collision problems for minutes or hours, and judges every accepted step |
 //! | `twins` | writes the CPU twins of the kernels from their shaders |
 //! | `wheel` | builds the Python package as a release uploads it |
+//! | `web` | builds the page and the npm packages |
 //! | `mutations` | makes mistakes in a copy of the code, and requires that the safety tests catch each |
 //!
 //! `cargo xtask help` prints the options.
@@ -33,6 +34,7 @@ mod readers;
 mod soak;
 mod twins;
 mod venv;
+mod web;
 mod wheel;
 mod workspace;
 
@@ -53,6 +55,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask mutations [NAME..]
        cargo xtask twins
        cargo xtask wheel [--test]
+       cargo xtask web [--test]
        cargo xtask notebooks [NAME..]
 
 check     run what CI runs, in named steps: format, \
@@ -104,6 +107,9 @@ the CPU runs in place of each kernel, from crates/gpu/shader: after every change
           shader
 wheel     build the Python package as a release uploads it, in target/wheels; needs Python with venv
           --test        install it into an environment of its own and run its tests
+web       build the page of crates/web into target/web, which any static server serves, and the npm packages into \
+target/npm
+          --test        open the page in Chromium and compare with the command; needs Python with venv
 notebooks execute the notebooks of docs/notebooks, all or those named, with the wheel of this \
 commit, and write their outputs
           into them; needs Python with venv, and a graphics driver";
@@ -142,6 +148,8 @@ fn main() -> ExitCode {
         ["twins"] => twins::run(&workspace::root()),
         ["wheel"] => wheel::run(&workspace::root(), false),
         ["wheel", "--test"] => wheel::run(&workspace::root(), true),
+        ["web"] => web::run(&workspace::root(), false),
+        ["web", "--test"] => web::run(&workspace::root(), true),
         ["notebooks", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             notebooks::run(&workspace::root(), names)
         }
