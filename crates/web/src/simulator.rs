@@ -4,7 +4,8 @@ use crate::arrays;
 use crate::error::{self, Thrown, input};
 use crate::options::object;
 use crate::scene::Scene;
-use bowknot::check::StateOptions;
+use bowknot::check::{MotionJudge, StateOptions};
+use bowknot::geometry::Identity;
 use bowknot::simulator::describe_intersections;
 use bowknot::world::WorldBody;
 use js_sys::{Float64Array, Uint32Array};
@@ -21,6 +22,14 @@ pub struct Simulator {
     pub(crate) inner: bowknot::Simulator,
     /// How many times as stiff as by its scene every body is.
     pub(crate) stiffness: f64,
+    judge: Option<KeptJudge>,
+}
+
+/// A judge that keeps its trees from one state to the next, and what it was made for.
+struct KeptJudge {
+    judge: MotionJudge,
+    model: Identity,
+    present: Vec<bool>,
 }
 
 /// The state of a simulation between two time steps.
@@ -60,7 +69,7 @@ impl Simulator {
     #[wasm_bindgen(constructor)]
     pub fn new(scene: &Scene) -> Result<Simulator, Thrown> {
         let inner = bowknot::Simulator::new(&scene.scene).map_err(error::simulation)?;
-        Ok(Self { inner, stiffness: 1.0 })
+        Ok(Self { inner, stiffness: 1.0, judge: None })
     }
 
     /// Makes one time step, and says what it did. An error leaves the state as it was.
@@ -161,11 +170,22 @@ impl Simulator {
 
     /// Judges the present state with exact arithmetic.
     #[wasm_bindgen(unchecked_return_type = "Verdict")]
-    pub fn check(&self) -> Result<JsValue, Thrown> {
-        let positions = &self.inner.positions()[..self.inner.world().collision_vertices()];
+    pub fn check(&mut self) -> Result<JsValue, Thrown> {
+        let Self { inner, judge, .. } = self;
+        let (model, present) = (inner.world().collision.identity(), inner.present());
+        // Other elements, or obstacles that have come or gone.
+        if judge.as_ref().is_some_and(|kept| kept.model != model || kept.present != present) {
+            *judge = None;
+        }
+        let kept = judge.get_or_insert_with(|| KeptJudge {
+            judge: MotionJudge::new(inner.judge()),
+            model,
+            present: present.to_vec(),
+        });
+        let positions = &inner.positions()[..inner.world().collision_vertices()];
         let options = StateOptions { limit: NAMED, distance: false };
-        let report = self.inner.judge().check_state(positions, &options).map_err(input)?;
-        let intersections = describe_intersections(self.inner.world(), &report.intersections);
+        let report = kept.judge.check_state(positions, &options).map_err(input)?;
+        let intersections = describe_intersections(inner.world(), &report.intersections);
         object(&Verdict { count: report.intersection_count, intersections })
     }
 

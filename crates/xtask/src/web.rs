@@ -55,7 +55,7 @@ pub fn run(root: &Path, with_tests: bool) -> ExitCode {
 }
 
 /// Builds the page into `target/web` and the packages into `target/npm`, and prints how large they are.
-pub fn build(root: &Path, target: &Path) -> Result<()> {
+fn build(root: &Path, target: &Path) -> Result<()> {
     let mut build = cargo(root, "build --profile web --package bowknot-web --target");
     build.arg(TARGET).env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", FLAGS);
     succeed(&mut build)?;
@@ -170,11 +170,17 @@ fn bindgen_version(root: &Path) -> Result<String> {
 /// Opens the page in a browser and compares what it computes with the command, which is built first.
 fn test(root: &Path, target: &Path) -> Result<()> {
     bowknot::build(root).map_err(Error::other)?;
-    let mut tests = tests(root, target);
-    match run_tests(&mut tests)? {
+    match run_tests(&mut tests(root, target))? {
         true => Ok(()),
         false => Err(Error::other("the tests of the page failed")),
     }
+}
+
+/// Builds the page and the packages, then runs the command of [`tests`].
+pub fn build_and_test(command: &mut Command) -> Result<bool> {
+    let root = command.get_current_dir().unwrap_or(Path::new(".")).to_owned();
+    build(&root, &target_folder(&root))?;
+    run_tests(command)
 }
 
 /// The command that tests the page, which has been built.
@@ -187,7 +193,7 @@ pub fn tests(root: &Path, target: &Path) -> Command {
 }
 
 /// Makes the environment of the tests unless it is up to date, then runs them.
-pub fn run_tests(command: &mut Command) -> Result<bool> {
+fn run_tests(command: &mut Command) -> Result<bool> {
     let folder = venv::folder(Path::new(command.get_program()));
     let root = command.get_current_dir().unwrap_or(Path::new("."));
     venv::ensure(&folder, &root.join(CRATE).join("tests/requirements.txt"))?;
