@@ -60,6 +60,9 @@ function bodiesOf({ bodies, triangles, edges, particles, planes, positions }) {
         particles: elementsOf(particles, 1, start, end),
         ...boxOf(positions, start, end),
     }));
+    // Bodies fall: the picture has room down to the ground.
+    const floors = Array.from({ length: planes.length / 4 }, (_, k) => (planes[4 * k + 2] > 0.99 ? planes[4 * k + 3] : Infinity));
+    for (const body of withMeshes) if (!body.obstacle) body.low[2] = Math.min(body.low[2], ...floors);
     const none = new Uint32Array(0);
     const grounds = Array.from({ length: planes.length / 4 }, (_, k) => ({
         name: `plane ${k}`, kind: "half-space", obstacle: true, vertices: 4, moves: false, start: 0, end: 0,

@@ -14,12 +14,19 @@ let intersections = 0;
 let hand = null;
 /** Vertices that collide, which are drawn. */
 let drawn = 0;
+/** Frames that the page has not shown yet. */
+let unshown = 0;
+/** Whether the next time step is about to come. */
+let pending = false;
+
+/** Most of these: a page that draws slowly is not run away from. */
+const AHEAD = 2;
 
 const say = (message, transfer = []) => postMessage(message, transfer);
 const loaded = init();
 /** Told without a wait: timers of workers wait for some milliseconds at least. */
 const soon = new MessageChannel();
-soon.port1.onmessage = () => advance();
+soon.port1.onmessage = () => awaited();
 
 function layout() {
     const { bodies, planes, timeStep, contactDistance } = simulator;
@@ -61,6 +68,7 @@ function step() {
     const verdict = simulator.check();
     const ended = performance.now();
     judged += 1;
+    unshown += 1;
     intersections += verdict.count;
     const positions = new Float32Array(simulator.positions.subarray(0, 3 * drawn));
     const { step: frame, time, two_way_steps: twoWaySteps } = statistics;
@@ -71,14 +79,20 @@ function step() {
     return ended - began;
 }
 
-/** The next time step, no sooner than in real time. */
+/** The next time step, no sooner than in real time; `shown` goes on where the page lags behind. */
 function advance() {
-    if (!playing || !simulator) return;
+    if (!playing || pending || unshown >= AHEAD) return;
     guarded(() => {
         const wait = 1000 * simulator.timeStep - step();
-        if (wait > 4) setTimeout(advance, wait);
+        pending = true;
+        if (wait > 4) setTimeout(awaited, wait);
         else soon.port2.postMessage(null);
     });
+}
+
+function awaited() {
+    pending = false;
+    advance();
 }
 
 const actions = {
@@ -95,13 +109,23 @@ const actions = {
         advance();
     },
     pause: () => (playing = false),
+    /** The page has shown a frame. */
+    shown: () => {
+        unshown -= 1;
+        advance();
+    },
     step: () => step(),
     stiffness: ({ factor }) => simulator.setStiffness(factor),
     friction: ({ value }) => simulator.setFrictionOfAll(value),
     grab: ({ vertex, speed }) => {
         const { name, number } = inMesh(vertex);
-        simulator.addPin(HAND, name, new Uint32Array([number]));
-        hand = { vertex, speed, target: null };
+        try {
+            simulator.addPin(HAND, name, new Uint32Array([number]));
+            hand = { vertex, speed, target: null };
+        } catch (error) {
+            // A pin of the scene holds it: no reason to stop.
+            say({ is: "warned", warnings: [error.message] });
+        }
     },
     lead: ({ target }) => hand && (hand.target = target),
     release: () => {
@@ -128,6 +152,6 @@ onmessage = async ({ data }) => {
     } catch (error) {
         return say({ is: "failed", message: `WebAssembly could not be started: ${error.message}` });
     }
-    const needsScene = !["open", "file", "pause"].includes(data.do);
+    const needsScene = !["open", "file", "pause", "shown"].includes(data.do);
     if (simulator || !needsScene) guarded(() => actions[data.do](data));
 };

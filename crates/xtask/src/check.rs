@@ -9,7 +9,6 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-
 struct Step {
     name: &'static str,
     command: Command,
