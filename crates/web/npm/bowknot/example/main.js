@@ -5,6 +5,7 @@ const canvas = document.getElementById("canvas");
 const words = document.getElementById("words");
 const renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
 const scene = new THREE.Scene();
+scene.background = new THREE.Color(0x1b212a);
 const camera = new THREE.PerspectiveCamera(35, 1, 0.01, 20);
 // Bowknot's z is up; so is the camera's here.
 camera.up.set(0, 0, 1);
