@@ -82,7 +82,9 @@ class Browser:
         if event.get("method") == "Runtime.exceptionThrown":
             self.faults.append(json.dumps(params["exceptionDetails"]))
         elif event.get("method") == "Log.entryAdded" and params["entry"]["level"] == "error":
-            self.faults.append(params["entry"]["text"])
+            # Browsers ask for an icon where a page names none.
+            if not params["entry"].get("url", "").endswith("/favicon.ico"):
+                self.faults.append(params["entry"]["text"])
 
     def open(self, address: str) -> None:
         self.call("Page.navigate", url=address)

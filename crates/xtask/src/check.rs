@@ -100,15 +100,9 @@ fn all_steps(root: &Path) -> Vec<Step> {
         steps.push(Step::new("peers", peers::tests(root, &target)));
         steps.push(Step { run: wheel::build, ..Step::new("wheel", wheel::command(root, &target)) });
         steps.push(Step { run: wheel::test, ..Step::new("python", wheel::tests(root, &target)) });
-        if wasm_is_installed() && web::has_bindgen(root, &target) {
-            steps.push(Step { run: web::build_and_test, ..Step::new("web", web::tests(root, &target)) });
-        } else {
-            let install = web::install_words(root);
-            println!("==> web: skipped, because the target or wasm-bindgen is missing: {install}");
-        }
     } else {
         println!(
-            "==> read exports, peers, wheel, python, web: skipped, because Python 3.11 with venv is missing: apt-get install \
+            "==> read exports, peers, wheel, python: skipped, because Python 3.11 with venv is missing: apt-get install \
              python3-venv"
         );
     }

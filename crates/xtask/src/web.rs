@@ -125,17 +125,6 @@ fn glue(tool: &Path, wasm: &Path, folder: &Path, options: &[&str]) -> Result<()>
     succeed(command.arg(wasm))
 }
 
-/// Whether the tool of the right version is there.
-pub fn has_bindgen(root: &Path, target: &Path) -> bool {
-    bindgen_version(root).is_ok_and(|version| found(target, &version).is_some())
-}
-
-/// How the tool is installed, in words.
-pub fn install_words(root: &Path) -> String {
-    let version = bindgen_version(root).unwrap_or_default();
-    format!("cargo install wasm-bindgen-cli --version {version}")
-}
-
 /// The tool of the right version; installs it unless it is there.
 fn bindgen(root: &Path, target: &Path) -> Result<PathBuf> {
     let version = bindgen_version(root)?;
@@ -169,35 +158,13 @@ fn bindgen_version(root: &Path) -> Result<String> {
 
 /// Opens the page in a browser and compares what it computes with the command, which is built first.
 fn test(root: &Path, target: &Path) -> Result<()> {
-    bowknot::build(root).map_err(Error::other)?;
-    match run_tests(&mut tests(root, target))? {
-        true => Ok(()),
-        false => Err(Error::other("the tests of the page failed")),
-    }
-}
-
-/// Builds the page and the packages, then runs the command of [`tests`].
-pub fn build_and_test(command: &mut Command) -> Result<bool> {
-    let root = command.get_current_dir().unwrap_or(Path::new(".")).to_owned();
-    build(&root, &target_folder(&root))?;
-    run_tests(command)
-}
-
-/// The command that tests the page, which has been built.
-pub fn tests(root: &Path, target: &Path) -> Command {
-    let mut command = Command::new(venv::python(&target.join("xtask/web")));
-    command.args(["-m", "pytest", "--quiet", "-rs", "--capture=no", "-p", "no:cacheprovider"]);
-    command.arg(root.join(CRATE).join("tests"));
-    command.env("BOWKNOT_COMMAND", bowknot::path(target)).env("BOWKNOT_TARGET", target).current_dir(root);
-    command
-}
-
-/// Makes the environment of the tests unless it is up to date, then runs them.
-fn run_tests(command: &mut Command) -> Result<bool> {
-    let folder = venv::folder(Path::new(command.get_program()));
-    let root = command.get_current_dir().unwrap_or(Path::new("."));
-    venv::ensure(&folder, &root.join(CRATE).join("tests/requirements.txt"))?;
-    Ok(command.status()?.success())
+    let command = bowknot::build(root).map_err(Error::other)?;
+    let (folder, tests) = (target.join("xtask/web"), root.join(CRATE).join("tests"));
+    venv::ensure(&folder, &tests.join("requirements.txt"))?;
+    let mut pytest = Command::new(venv::python(&folder));
+    // What they print, frame rates and errors, is part of the result.
+    pytest.args(["-m", "pytest", "--quiet", "-rs", "--capture=no", "-p", "no:cacheprovider"]).arg(tests);
+    succeed(pytest.env("BOWKNOT_COMMAND", command).env("BOWKNOT_TARGET", target).current_dir(root))
 }
 
 /// Prints the size of each file of a folder and of all, as they are and compressed. Returns the latter.
