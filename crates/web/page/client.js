@@ -8,9 +8,7 @@ class Client {
         this.worker = null;
     }
 
-    /** Starts a worker, in place of one that has failed. */
     start() {
-        this.worker?.terminate();
         this.worker = new Worker("worker.js", { type: "module" });
         this.worker.onmessage = ({ data }) => this.on[data.is](data);
         this.worker.onerror = (event) => {
@@ -20,7 +18,16 @@ class Client {
         };
     }
 
-    tell(message, transfer = []) {
-        this.worker.postMessage(message, transfer);
+    /** Ends a worker that has failed. */
+    stop() {
+        this.worker?.terminate();
+        this.worker = null;
+    }
+
+    /** Asks for something. A scene or a file to open starts a worker if there is none. */
+    tell(message) {
+        if (!this.worker && message.do !== "open" && message.do !== "file") return;
+        if (!this.worker) this.start();
+        this.worker.postMessage(message);
     }
 }

@@ -120,9 +120,9 @@ const client = new Client({
     /** The worker is of no use any more. */
     failed({ message }) {
         state.state = "failed";
+        client.stop();
         play(false);
         notice(`${message}\n\nChoose a scene to begin anew.`, true);
-        client.start();
     },
 });
 
@@ -212,7 +212,6 @@ function start() {
     const preferred = window.matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
     document.documentElement.dataset.theme = ["light", "dark"].includes(asked.get("theme")) ? asked.get("theme") : preferred;
     controls();
-    client.start();
     const first = SCENES.find(({ scene }) => scene === asked.get("scene")) ?? SCENES[0];
     open({ do: "open", scene: first.scene, scale: first.scale });
 }

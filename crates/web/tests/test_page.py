@@ -145,3 +145,13 @@ def test_a_mesh_that_cannot_start_is_refused_in_words(browser: Browser, address:
     drop(browser, "crossed.obj", crossed)
     browser.wait("at('notice').textContent.includes('intersect')")
     browser.picture(pictures / "refused.png")
+
+
+def test_a_worker_that_fails_is_said_in_words_and_replaced(browser: Browser, address: str) -> None:
+    start(browser, address, "stack", "&pause=1")
+    browser.evaluate("client.worker.onerror(new ErrorEvent('error', { message: 'out of memory' }))")
+    assert "out of memory" in browser.evaluate("at('notice').textContent")
+    assert browser.data("state") == "failed"
+    browser.evaluate("at('scenes').children[1].click()")
+    browser.wait("document.body.dataset.state === 'ready' && Number(document.body.dataset.frame) >= 2")
+    assert browser.evaluate("at('notice').hidden")
