@@ -47,7 +47,10 @@ class Browser:
         folder = Path(self.profile.name)
         flags = [*FLAGS, f"--window-size={size[0]},{size[1]}", f"--user-data-dir={folder}", "about:blank"]
         self.process = subprocess.Popen(
-            [program() or NAMES[0], *flags], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            [program() or NAMES[0], *flags],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
         self.numbers = itertools.count(1)
         #: Exceptions and errors that the page's console shows.
@@ -61,7 +64,9 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ["Page", "Runtime", "Log"]:
             self.call(f"{domain}.enable")
-        self.call("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False)
+        self.call(
+            "Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=False
+        )
 
     def call(self, method: str, **params: Any) -> dict[str, Any]:
         """Asks for something and waits for the answer."""
@@ -81,10 +86,11 @@ class Browser:
         params = event.get("params", {})
         if event.get("method") == "Runtime.exceptionThrown":
             self.faults.append(json.dumps(params["exceptionDetails"]))
-        elif event.get("method") == "Log.entryAdded" and params["entry"]["level"] == "error":
+        elif event.get("method") == "Log.entryAdded":
+            entry = params["entry"]
             # Browsers ask for an icon where a page names none.
-            if not params["entry"].get("url", "").endswith("/favicon.ico"):
-                self.faults.append(params["entry"]["text"])
+            if entry["level"] == "error" and not entry.get("url", "").endswith("/favicon.ico"):
+                self.faults.append(entry["text"])
 
     def open(self, address: str) -> None:
         self.call("Page.navigate", url=address)

@@ -19,13 +19,13 @@ COMMAND = os.environ.get("BOWKNOT_COMMAND", "bowknot")
 #: Scenes, their scales, and time steps until the comparison.
 CASES = [("drape", 0.4, 30), ("tube", 0.3, 20), ("trampoline", 0.4, 20), ("hair", 0.3, 15), ("sand", 0.3, 20)]
 
-MODULE = f"""
-const toBase64 = (array) => {{
+MODULE = """
+const toBase64 = (array) => {
     const bytes = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
     let text = "";
     for (let k = 0; k < bytes.length; k += 4096) text += String.fromCharCode(...bytes.subarray(k, k + 4096));
     return btoa(text);
-}};
+};
 const module = await import(PATH);
 await module.default();
 """
@@ -45,7 +45,9 @@ def test_positions_are_those_of_the_command(
     browser: Browser, address: str, tmp_path: Path, scene: str, scale: float, frames: int, preset: str
 ) -> None:
     out = tmp_path / "run"
-    arguments = f"run {scene} --scale {scale} --frames {frames} --set contact.preset={preset} --format npz --out".split()
+    arguments = (
+        f"run {scene} --scale {scale} --frames {frames} --set contact.preset={preset} --format npz --out".split()
+    )
     subprocess.run([COMMAND, *arguments, out], check=True, capture_output=True)
     native = np.load(next(out.rglob("*.npz")))["X"][-1]
     text = run(
@@ -87,16 +89,22 @@ def test_the_resolver_keeps_two_triangles_apart(browser: Browser, address: str) 
 
 def test_errors_are_named_and_in_words(browser: Browser, address: str) -> None:
     cases = {
-        'new module.Resolver({ rest: [0, 0, 0], faces: [] })': ("InputError", "unknown key faces"),
-        'new module.Resolver({ rest: [0, 0] })': ("InputError", "not a multiple of 3"),
-        'new module.Resolver({ rest: new Float64Array(9), triangles: [0, 1, 7] })': ("InputError", "7"),
+        "new module.Resolver({ rest: [0, 0, 0], faces: [] })": ("InputError", "unknown key faces"),
+        "new module.Resolver({ rest: [0, 0] })": ("InputError", "not a multiple of 3"),
+        "new module.Resolver({ rest: new Float64Array(9), triangles: [0, 1, 7] })": ("InputError", "7"),
         'module.Scene.builtin("drap")': ("InputError", "drape"),
         'module.Scene.fromToml("[[body]]\\nmesh = \\"a.obj\\"")': ("InputError", "no mesh a.obj is given"),
-        'module.Scene.fromToml("[[body]]\\nmesh = \\"a.obj\\"", { "a.obj": "v 0 0 0\\nf 1 2 3" })': ("InputError", "a.obj:2: "),
+        'module.Scene.fromToml("[[body]]\\nmesh = \\"a.obj\\"", { "a.obj": "v 0 0 0\\nf 1 2 3" })': (
+            "InputError",
+            "a.obj:2: ",
+        ),
         'module.Scene.builtin("drape", 0.2).withSets(["contact.dleta=1"])': ("InputError", "delta"),
         'new module.Simulator(module.Scene.builtin("drape", 0.2)).removePin("none")': ("InputError", "none"),
         """new module.Simulator(module.Scene.fromToml('[[body]]\\nmesh = "m"', { m: { positions: [0, 0, 0, 1, 0, 0, 0, 1, 0,
-            0.2, 0.2, -1, 0.3, 0.2, 1, 0.2, 0.3, 1], triangles: [0, 1, 2, 3, 4, 5] } }))""": ("IntersectionError", "intersect"),
+            0.2, 0.2, -1, 0.3, 0.2, 1, 0.2, 0.3, 1], triangles: [0, 1, 2, 3, 4, 5] } }))""": (
+            "IntersectionError",
+            "intersect",
+        ),
     }
     for code, (name, words) in cases.items():
         result = run(browser, address, f"try {{ {code} }} catch (error) {{ return [error.name, error.message] }}")

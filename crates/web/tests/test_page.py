@@ -55,14 +55,18 @@ def test_scenes_run_without_intersections(browser: Browser, address: str, pictur
     assert browser.evaluate("page.positions.every(Number.isFinite)")
     vertices = browser.evaluate("meta.bodies.filter((b) => !b.obstacle).reduce((sum, b) => sum + b.vertices, 0)")
     rate = f"{int(browser.data('frame') or 0) / seconds:.0f} frames/s"
-    print(f"\n  {scene}: {vertices} vertices, {rate}, last: step {browser.data('step')} ms, judge {browser.data('judge')} ms")
+    print(
+        f"\n  {scene}: {vertices} vertices, {rate}, last: step {browser.data('step')} ms, judge {browser.data('judge')} ms"
+    )
     browser.picture(pictures / f"{scene}.png")
 
 
 def test_a_vertex_is_dragged(browser: Browser, address: str, pictures: Path) -> None:
     start(browser, address, "drape")
     browser.wait("Number(document.body.dataset.frame) >= 60", 120)
-    x, y = browser.evaluate("(({ left, top, width, height }) => [left + width / 2, top + height / 2])(at('canvas').getBoundingClientRect())")
+    x, y = browser.evaluate(
+        "(({ left, top, width, height }) => [left + width / 2, top + height / 2])(at('canvas').getBoundingClientRect())"
+    )
     browser.mouse("mouseMoved", x, y)
     browser.mouse("mousePressed", x, y)
     vertex = browser.data("held")
@@ -92,7 +96,9 @@ def test_sliders_change_the_simulation(browser: Browser, address: str) -> None:
     browser.wait("Number(document.body.dataset.frame) >= 3")
 
     def slide(name: str, value: float) -> None:
-        browser.evaluate(f"{{ const s = at('{name}'); s.value = {value}; for (const e of ['input', 'change']) s.dispatchEvent(new Event(e)); }}")
+        browser.evaluate(
+            f"{{ const s = at('{name}'); s.value = {value}; for (const e of ['input', 'change']) s.dispatchEvent(new Event(e)); }}"
+        )
 
     slide("stiffness", 1)
     slide("friction", 0.8)
