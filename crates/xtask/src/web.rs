@@ -56,10 +56,10 @@ pub fn run(root: &Path, with_tests: bool) -> ExitCode {
 
 /// Builds the page into `target/web` and the packages into `target/npm`, and prints how large they are.
 fn build(root: &Path, target: &Path) -> Result<()> {
-    let mut build = cargo(root, "build --profile web --package bowknot-web --target");
+    let mut build = cargo(root, "build --profile wasm --package bowknot-web --target");
     build.arg(TARGET).env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", FLAGS);
     succeed(&mut build)?;
-    let wasm = target.join(TARGET).join("web/bowknot_web.wasm");
+    let wasm = target.join(TARGET).join("wasm/bowknot_web.wasm");
     let tool = bindgen(root, target)?;
     let (page, npm) = (target.join("web"), target.join("npm"));
     for folder in [&page, &npm] {
