@@ -381,7 +381,10 @@ fn bodies_with_quadratic_elements_stay_on_the_cpu() {
     let scene = Scene::from_toml(&text, std::path::Path::new(".")).expect("a scene");
     let run = |asks: bool| {
         let mut simulator = Simulator::new(&scene).expect("a simulator");
-        assert_eq!(simulator.world().bodies_only_on_cpu().map(|(name, _)| name).collect::<Vec<_>>(), ["block"]);
+        assert_eq!(
+            simulator.world().bodies_only_on_cpu().map(|(name, _)| name).collect::<Vec<_>>(),
+            ["block"]
+        );
         if asks {
             let backend = Counted::new(TwinEngine::new(), None).0;
             let error = simulator.set_dynamics_backend(Some(backend)).expect_err("it is refused");

@@ -59,7 +59,7 @@ pub use obj::{read_obj, read_obj_surface, write_obj};
 pub use pc2::{truncate_pc2, write_pc2_frame};
 pub use pick::read_mesh_part;
 pub use ply::{read_ply, write_ply};
-pub use read::{MESH_ENDINGS, read_mesh};
+pub use read::{MESH_ENDINGS, read_mesh, read_mesh_bytes};
 pub use surface::{Corner, EdgeSplit, Labels, Polygon, PolygonFaults, Surface};
 pub use tet_list::write_tet_list;
 pub use usd::{UsdBody, write_usda, write_usda_with_fields};

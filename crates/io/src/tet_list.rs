@@ -6,9 +6,7 @@ use crate::error::{IoError, Place};
 use crate::import::{Import, without_mark};
 use crate::mesh::{Mesh, MeshView};
 use crate::numbering::Numbering;
-use bowknot_errors::Parameters;
 use bowknot_errors::counted;
-use std::fs;
 use std::io::Write;
 use std::path::Path;
 
@@ -17,12 +15,10 @@ use std::path::Path;
 /// with another word are skipped, the latter with their number logged as a warning.
 ///
 /// # Errors
-/// A missing or malformed file, coordinates that are not finite, vertices that do not exist or are given
+/// A malformed file, coordinates that are not finite, vertices that do not exist or are given
 /// twice; with the line.
-pub(crate) fn read_tet_list(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
-    let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
-    let text = String::from_utf8_lossy(without_mark(&bytes));
+pub(crate) fn read_tet_list(path: &Path, bytes: &[u8], import: &Import) -> Result<Mesh, IoError> {
+    let text = String::from_utf8_lossy(without_mark(bytes));
     let (mesh, skipped) =
         parse(&text, import).map_err(|(place, message)| IoError::content(path, place, message))?;
     if skipped > 0 {

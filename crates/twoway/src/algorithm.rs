@@ -8,7 +8,7 @@ use crate::statistics::Statistics;
 use crate::stop::{Residuals, StopTest};
 use bowknot_stepper::StepReport;
 use std::ops::ControlFlow;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Makes two-way steps: on the CPU by the stages, on a device several of them at once.
 ///

@@ -13,7 +13,7 @@ use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
 use bowknot_stepper::StepReport;
 use std::ops::ControlFlow;
-use std::time::Instant;
+use web_time::Instant;
 
 /// The stages over the state of a call.
 pub(crate) struct Cpu<'a, S, B, F> {

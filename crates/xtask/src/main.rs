@@ -13,6 +13,7 @@
 //! | `twins` | writes the CPU twins of the kernels from their shaders |
 //! | `wheel` | builds the Python package as a release uploads it |
 //! | `blender` | packs the extension for Blender, with the wheel in it |
+//! | `web` | builds the page and the npm packages |
 //! | `mutations` | makes mistakes in a copy of the code, and requires that the safety tests catch each |
 //!
 //! `cargo xtask help` prints the options.
@@ -35,6 +36,7 @@ mod readers;
 mod soak;
 mod twins;
 mod venv;
+mod web;
 mod wheel;
 mod workspace;
 
@@ -56,6 +58,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask twins
        cargo xtask wheel [--test]
        cargo xtask blender [--test] [WHEEL..]
+       cargo xtask web [--test]
        cargo xtask notebooks [NAME..]
 
 check     run what CI runs, in named steps: format, \
@@ -110,6 +113,9 @@ wheel     build the Python package as a release uploads it, in target/wheels; ne
 blender   pack the extension for Blender, in target/blender, with the wheels named, of other systems too, or with one that
           it builds; needs Python with venv
           --test        install the zip in Blender's module bpy (500 MB, Python 3.11) and run the extension's tests
+web       build the page of crates/web into target/web, which any static server serves, and the npm packages into \
+target/npm
+          --test        open the page in Chromium and compare with the command; needs Python with venv
 notebooks execute the notebooks of docs/notebooks, all or those named, with the wheel of this \
 commit, and write their outputs
           into them; needs Python with venv, and a graphics driver";
@@ -153,6 +159,8 @@ fn main() -> ExitCode {
         {
             blender::run(&workspace::root(), arguments)
         }
+        ["web"] => web::run(&workspace::root(), false),
+        ["web", "--test"] => web::run(&workspace::root(), true),
         ["notebooks", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             notebooks::run(&workspace::root(), names)
         }

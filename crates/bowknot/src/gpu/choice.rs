@@ -5,7 +5,7 @@ use bowknot_dynamics::NewtonBackend;
 use bowknot_errors::counted;
 use bowknot_gpu::{Adapter, ConjugateGradients, Device, DeviceEngine};
 use bowknot_scene::Scene;
-use std::time::Instant;
+use web_time::Instant;
 
 /// How many times as long the CPU must take for the device to be chosen: where both take as long, chance must not decide.
 const MARGIN: f64 = 1.25;

@@ -4,7 +4,8 @@ use super::checker::Checker;
 use crate::simulator::{NearStart, StepStatistics, WaitingElements};
 use bowknot_scene::world::{SceneInfo, World};
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// How long a time step takes before it is reported while it goes on, and how often it then is.
 const SLOW: [Duration; 2] = [Duration::from_secs(2), Duration::from_secs(1)];

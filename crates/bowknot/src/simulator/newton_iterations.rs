@@ -23,7 +23,7 @@ use bowknot_scene::CollisionEvery;
 use bowknot_scene::world::World;
 use bowknot_twoway::{ResolveInput, Resolver, Statistics};
 use rayon::prelude::*;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Largest number of two-way steps of a collision stage that is not the last of its time step. On the way to
 /// a target that is far from the solution folds lock each other, while the target of the next iteration knows

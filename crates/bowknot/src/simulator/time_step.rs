@@ -6,7 +6,7 @@ use super::sleep::SleepingBodies;
 use super::tolerance::Tolerance;
 use super::{Scratch, Simulator, interior, time_of};
 use bowknot_geometry::{Point, Vector};
-use std::time::Instant;
+use web_time::Instant;
 
 impl Simulator {
     /// Makes one time step, on a thread of the pool.

@@ -11,7 +11,7 @@ mod tests;
 use crate::elements::{Becomes, Elements};
 use crate::error::{IoError, Place};
 use crate::groups::Groups;
-use crate::import::{Import, read_bytes, without_mark};
+use crate::import::{Import, without_mark};
 use crate::mesh::Mesh;
 use bowknot_geometry::Point;
 use std::collections::BTreeMap;
@@ -36,11 +36,10 @@ const SECTIONS: [(&str, usize, Becomes, &str); 8] = [
 /// plane get z = 0. Other sections are skipped; their names are logged as a warning.
 ///
 /// # Errors
-/// A missing, malformed or truncated file, a binary one, coordinates that are not finite, vertices that do not
+/// A malformed or truncated file, a binary one, coordinates that are not finite, vertices that do not
 /// exist; with the line.
-pub(crate) fn read_medit(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    let bytes = read_bytes(path, import)?;
-    let text = String::from_utf8_lossy(without_mark(&bytes));
+pub(crate) fn read_medit(path: &Path, bytes: &[u8], import: &Import) -> Result<Mesh, IoError> {
+    let text = String::from_utf8_lossy(without_mark(bytes));
     let (mesh, notes) =
         parse(&text, import).map_err(|(place, message)| IoError::content(path, place, message))?;
     for note in notes {

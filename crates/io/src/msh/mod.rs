@@ -17,12 +17,10 @@ mod tests;
 use crate::error::{IoError, Place};
 use crate::import::Import;
 use crate::mesh::Mesh;
-use bowknot_errors::Parameters;
 use cursor::{Cursor, Fault};
 use elements::Elements;
 use groups::PhysicalGroups;
 use nodes::Nodes;
-use std::fs;
 use std::path::Path;
 use version::Version;
 
@@ -39,14 +37,12 @@ pub use write::write_msh;
 /// warning.
 ///
 /// # Errors
-/// A missing, malformed or truncated file, another version, the other byte order, coordinates that are not
+/// A malformed or truncated file, another version, the other byte order, coordinates that are not
 /// finite, nodes that do not exist or are given twice; with the line of a text file or the byte of a binary
 /// one.
-pub(crate) fn read_msh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
-    let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
+pub(crate) fn read_msh(path: &Path, bytes: &[u8], import: &Import) -> Result<Mesh, IoError> {
     let (mesh, notes) =
-        parse(&bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
+        parse(bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
     for note in notes {
         tracing::warn!("{}: {note}", path.display());
     }

@@ -10,6 +10,6 @@ mod library;
 mod read;
 mod write;
 
-pub(crate) use read::read_segments;
+pub(crate) use read::{parse_obj, read_segments};
 pub use read::{read_obj, read_obj_surface};
 pub use write::write_obj;

@@ -3,11 +3,10 @@
 use super::faces::{Faces, add_groups};
 use super::write::{NAMELESS, OBSTACLE_FROM};
 use crate::error::{IoError, Place};
-use crate::import::{Import, without_mark};
+use crate::import::{Import, read_bytes, without_mark};
 use crate::mesh::Mesh;
 use crate::surface::{Corner, Surface};
-use bowknot_errors::{Parameters, counted};
-use std::fs;
+use bowknot_errors::counted;
 use std::path::Path;
 
 /// Reads an OBJ file: vertices, faces (as fans around their first vertex), `l` polylines as strands, `p`
@@ -22,7 +21,12 @@ use std::path::Path;
 /// A missing or malformed file, coordinates that are not finite, indices of vertices, texture coordinates or
 /// normals that do not exist; with the line.
 pub fn read_obj(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    read(path, import, Dialect::Obj)
+    parse_obj(path, &read_bytes(path, import)?, import)
+}
+
+/// As [`read_obj`], from the bytes of the file at `path`.
+pub(crate) fn parse_obj(path: &Path, bytes: &[u8], import: &Import) -> Result<Mesh, IoError> {
+    read(path, bytes, import, Dialect::Obj)
 }
 
 /// Reads an OBJ file that [`super::write_obj`] wrote: as [`read_obj`], but corners share a normal only where
@@ -31,15 +35,16 @@ pub fn read_obj(path: &Path, import: &Import) -> Result<Mesh, IoError> {
 /// # Errors
 /// As [`read_obj`].
 pub fn read_obj_surface(path: &Path) -> Result<Option<Surface>, IoError> {
-    Ok(read(path, &Import::default(), Dialect::Ours)?.surface)
+    let import = Import::default();
+    Ok(read(path, &read_bytes(path, &import)?, &import, Dialect::Ours)?.surface)
 }
 
 /// Reads a `.seg` file: as an OBJ, but `s a b ..` is a strand through these vertices, not a smoothing group.
 ///
 /// # Errors
 /// As [`read_obj`].
-pub(crate) fn read_segments(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    read(path, import, Dialect::Segments)
+pub(crate) fn read_segments(path: &Path, bytes: &[u8], import: &Import) -> Result<Mesh, IoError> {
+    read(path, bytes, import, Dialect::Segments)
 }
 
 const NO_VERTICES: &str = "no vertices: not of the OBJ manner, or empty";
@@ -54,15 +59,13 @@ enum Dialect {
     Segments,
 }
 
-fn read(path: &Path, import: &Import, dialect: Dialect) -> Result<Mesh, IoError> {
-    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
-    let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
+fn read(path: &Path, bytes: &[u8], import: &Import, dialect: Dialect) -> Result<Mesh, IoError> {
     if bytes.trim_ascii().is_empty() {
         // Not a mesh without vertices: exports have comments or names at least.
         return Err(IoError::content(path, Place::File, NO_VERTICES));
     }
     // Names of groups and materials may be in any encoding; the numbers are ASCII.
-    let text = String::from_utf8_lossy(without_mark(&bytes));
+    let text = String::from_utf8_lossy(without_mark(bytes));
     let mut reader = Reader {
         path,
         import,

@@ -5,5 +5,6 @@ mod payload;
 mod read;
 mod write;
 
+pub(crate) use read::parse_ply;
 pub use read::read_ply;
 pub use write::write_ply;

@@ -3,12 +3,10 @@
 use super::header::{Element, Header, PropertyKind};
 use super::payload::{Payload, Row};
 use crate::error::{IoError, Place};
-use crate::import::Import;
+use crate::import::{Import, read_bytes};
 use crate::mesh::Mesh;
 use crate::surface::{Corner, Labels, Surface};
-use bowknot_errors::Parameters;
 use bowknot_errors::counted;
-use std::fs;
 use std::path::Path;
 
 /// Reads a PLY file: `vertex` (x y z, and `obstacle`, `body` if there), `face` (a list `vertex_indices` or
@@ -21,9 +19,12 @@ use std::path::Path;
 /// A missing, malformed or truncated file, coordinates that are not finite, indices of vertices that do not
 /// exist, triangle strips; with the line of an ASCII file or the element of a binary one.
 pub fn read_ply(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
-    let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
-    let mesh = parse(&bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
+    parse_ply(path, &read_bytes(path, import)?, import)
+}
+
+/// As [`read_ply`], from the bytes of the file at `path`.
+pub(crate) fn parse_ply(path: &Path, bytes: &[u8], import: &Import) -> Result<Mesh, IoError> {
+    let mesh = parse(bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
     if mesh.positions.is_empty() {
         return Err(IoError::Empty { path: path.to_owned(), message: "it has no vertices" });
     }

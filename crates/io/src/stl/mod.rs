@@ -11,7 +11,7 @@ mod text;
 mod tests;
 
 use crate::error::{IoError, Place};
-use crate::import::{Import, read_bytes, without_mark};
+use crate::import::{Import, without_mark};
 use crate::mesh::Mesh;
 use std::collections::HashMap;
 use std::path::Path;
@@ -22,12 +22,11 @@ use std::path::Path;
 /// and colors are not read.
 ///
 /// # Errors
-/// A missing, malformed or truncated file, coordinates that are not finite; with the line of a text file or
+/// A malformed or truncated file, coordinates that are not finite; with the line of a text file or
 /// the triangle of a binary one. A sound file without triangles is [`IoError::Empty`].
-pub(crate) fn read_stl(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    let bytes = read_bytes(path, import)?;
+pub(crate) fn read_stl(path: &Path, bytes: &[u8], import: &Import) -> Result<Mesh, IoError> {
     let (mesh, note) =
-        parse(&bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
+        parse(bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
     if mesh.triangles.is_empty() {
         return Err(IoError::Empty { path: path.to_owned(), message: "it has no triangles" });
     }

@@ -1,7 +1,6 @@
 //! Lists of tetrahedra and segments.
 
 use super::*;
-use crate::tet_list::read_tet_list;
 
 #[test]
 fn tet_lists_with_any_numbers() {
@@ -21,7 +20,7 @@ fn tet_lists_with_any_numbers() {
         ("Vertex", "Point", "no line begins with Vertex"),
     ] {
         let bad = if from == "Vertex" { text.replace(from, to) } else { text.replacen(from, to, 1) };
-        let error = message(read_tet_list(&write(&folder, "bad.t", bad), &Import::default()));
+        let error = message(read_mesh(&write(&folder, "bad.t", bad), &Import::default()));
         assert!(error.contains(words), "{from:?} -> {to:?} gave: {error}");
     }
 }
@@ -62,4 +61,26 @@ fn solids_are_written_as_gmsh_files_and_as_lists() {
     let points = Mesh { particles: vec![3, 1], tets: Vec::new(), triangles: Vec::new(), ..whole };
     write_msh(&path, &points.view()).unwrap();
     assert_eq!(read_mesh(&path, &Import::default()).unwrap(), points);
+}
+
+#[test]
+fn bytes_are_read_as_the_file_of_their_name() {
+    let folder = folder();
+    let mesh = Mesh { obstacle: None, body: None, names: Vec::new(), ..sample() };
+    let import = Import { up: Up::Y, scale: 0.5 };
+    for (name, write) in [("a.obj", write_obj as fn(&Path, &MeshView<'_>) -> _), ("a.ply", write_ply)] {
+        let path = folder.path().join(name);
+        write(&path, &mesh.view()).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        let read = read_mesh_bytes(Path::new(name), &bytes, &import).unwrap();
+        assert_eq!(read, read_mesh(&path, &import).unwrap());
+        let cut = message(read_mesh_bytes(Path::new(name), &bytes[..bytes.len() / 2 - 1], &import));
+        assert!(cut.starts_with(name), "{cut}");
+    }
+    let refused = |name: &str, scale| {
+        message(read_mesh_bytes(Path::new(name), b"", &Import { scale, ..Import::default() }))
+    };
+    assert!(refused("a.glb", 1.0).contains("convert it to OBJ or PLY"));
+    assert!(refused("a.png", 1.0).contains("not a mesh: only"));
+    assert!(refused("a.obj", -1.0).contains("scale"));
 }

@@ -3,7 +3,7 @@
 use super::cells::Cells;
 use super::data::{Fault, Storage, line, offset};
 use crate::error::{IoError, Place};
-use crate::import::{Import, read_bytes, without_mark};
+use crate::import::{Import, without_mark};
 use crate::mesh::Mesh;
 use roxmltree::{Document, Node};
 use std::path::Path;
@@ -15,12 +15,11 @@ use std::path::Path;
 /// component is a group of the vertices where it is not 0.
 ///
 /// # Errors
-/// A missing, malformed or truncated file, other grids, compressors than that of zlib, coordinates that are not
+/// A malformed or truncated file, other grids, compressors than that of zlib, coordinates that are not
 /// finite, vertices that do not exist; with the line or the cell. A grid without points is [`IoError::Empty`].
-pub(crate) fn read_vtu(path: &Path, import: &Import) -> Result<Mesh, IoError> {
-    let bytes = read_bytes(path, import)?;
+pub(crate) fn read_vtu(path: &Path, bytes: &[u8], import: &Import) -> Result<Mesh, IoError> {
     let (mesh, notes) =
-        parse(&bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
+        parse(bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
     if mesh.positions.is_empty() {
         return Err(IoError::Empty { path: path.to_owned(), message: "it has no vertices" });
     }

@@ -235,9 +235,10 @@ fn what_is_written_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.vtu");
     write_vtu(&path, &mesh.view()).unwrap();
-    assert_eq!(read_vtu(&path, &Import::default()).unwrap(), mesh);
+    let read = || read_vtu(&path, &std::fs::read(&path).unwrap(), &Import::default());
+    assert_eq!(read().unwrap(), mesh);
     write_vtu(&path, &Mesh::default().view()).unwrap();
-    assert!(matches!(read_vtu(&path, &Import::default()), Err(crate::IoError::Empty { .. })));
+    assert!(matches!(read(), Err(crate::IoError::Empty { .. })));
 }
 
 #[test]

@@ -23,7 +23,7 @@ use flight::Flight;
 pub use near::{GUARDED, GUARDED_FLOOR, KNOWN};
 use near::{Listed, NearPairs};
 use regions::Regions;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Share of the vertices with new trust regions above which everything is searched.
 const MAX_CHANGED: f64 = 0.5;

@@ -1,6 +1,7 @@
 //! Delta debugging: the fewest of some things that still show a failure.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// How long a reduction may look for a smaller problem.
 #[derive(Clone, Copy)]

@@ -1,0 +1,249 @@
+//! `cargo xtask web`: the page and the npm packages of `crates/web`, and their tests.
+//!
+//! Cargo compiles the crate for the web, and the tool `wasm-bindgen` writes the JavaScript that calls it; it has the
+//! version of the crate of that name in `Cargo.lock`. The viewer of the page is that of `crates/report`.
+
+use crate::bowknot;
+use crate::venv;
+use crate::workspace::{cargo, target_folder};
+use std::fs;
+use std::io::{Error, Result};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+/// What rustc compiles for.
+pub const TARGET: &str = "wasm32-unknown-unknown";
+
+/// The crate of the page and the packages.
+const CRATE: &str = "crates/web";
+
+/// Where the viewer's scripts are.
+const REPORT: &str = "crates/report/src/assets";
+
+/// Scripts of the report that the page uses, and what their licenses are in.
+const VIEWER: [&str; 8] = [
+    "page.css",
+    "libraries/libraries.min.js",
+    "libraries/LICENSE-three",
+    "app/colors.js",
+    "app/fields.js",
+    "app/shapes.js",
+    "app/ground.js",
+    "app/viewer.js",
+];
+
+/// Vector instructions, which all browsers have had since 2023, and a stack like that of the command's threads.
+const FLAGS: &str = "-C target-feature=+simd128 -C link-arg=-zstack-size=8388608";
+
+/// Most bytes of the page, each of its files compressed by gzip.
+const MOST: usize = 3_000_000;
+
+/// Builds, and tests as well if asked to.
+pub fn run(root: &Path, with_tests: bool) -> ExitCode {
+    let target = target_folder(root);
+    let done = build(root, &target).and_then(|()| match with_tests {
+        true => test(root, &target),
+        false => Ok(()),
+    });
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Builds the page into `target/web` and the packages into `target/npm`, and prints how large they are.
+fn build(root: &Path, target: &Path) -> Result<()> {
+    let mut build = cargo(root, "build --profile wasm --package bowknot-web --target");
+    build.arg(TARGET).env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", FLAGS);
+    succeed(&mut build)?;
+    let wasm = target.join(TARGET).join("wasm/bowknot_web.wasm");
+    let tool = bindgen(root, target)?;
+    let (page, npm) = (target.join("web"), target.join("npm"));
+    for folder in [&page, &npm] {
+        if folder.exists() {
+            fs::remove_dir_all(folder)?;
+        }
+    }
+    write_page(root, &tool, &wasm, &page)?;
+    write_packages(root, &tool, &wasm, &npm)?;
+    let size = report(&page)?;
+    report(&npm.join("bowknot"))?;
+    report(&npm.join("bowknot-compat"))?;
+    if size > MOST {
+        return Err(Error::other(format!("the page takes {size} bytes compressed, more than {MOST}")));
+    }
+    Ok(())
+}
+
+/// The page: its own files, the module, and the viewer of the report.
+fn write_page(root: &Path, tool: &Path, wasm: &Path, page: &Path) -> Result<()> {
+    let viewer = page.join("viewer");
+    fs::create_dir_all(&viewer)?;
+    copy_folder(&root.join(CRATE).join("page"), page)?;
+    for file in VIEWER {
+        let name = Path::new(file).file_name().unwrap_or_default();
+        fs::copy(root.join(REPORT).join(file), viewer.join(name))?;
+    }
+    glue(tool, wasm, page, &["--no-typescript"])
+}
+
+/// The package whose module is a file beside it, and the one that has it inside.
+fn write_packages(root: &Path, tool: &Path, wasm: &Path, npm: &Path) -> Result<()> {
+    let version = env!("CARGO_PKG_VERSION");
+    let sources = root.join(CRATE).join("npm");
+    for name in ["bowknot", "bowknot-compat"] {
+        let folder = npm.join(name);
+        fs::create_dir_all(&folder)?;
+        copy_folder(&sources.join(name), &folder)?;
+        let manifest = folder.join("package.json");
+        let text = fs::read_to_string(&manifest)?.replace("\"0.0.0\"", &format!("\"{version}\""));
+        fs::write(manifest, text)?;
+        for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
+            fs::copy(root.join(license), folder.join(license))?;
+        }
+    }
+    glue(tool, wasm, &npm.join("bowknot"), &[])?;
+    // Bundlers would look for the file that the glue names.
+    let compat = npm.join("bowknot-compat");
+    glue(tool, wasm, &compat, &["--omit-default-module-path"])?;
+    let module = compat.join("bowknot_bg.wasm");
+    let inlined = format!("export default \"{}\";\n", base64(&fs::read(&module)?));
+    fs::write(compat.join("module.js"), inlined)?;
+    fs::remove_file(module)?;
+    fs::remove_file(compat.join("bowknot_bg.wasm.d.ts"))
+}
+
+/// Writes the JavaScript that calls a module, as `bowknot.js`, and the module beside it.
+fn glue(tool: &Path, wasm: &Path, folder: &Path, options: &[&str]) -> Result<()> {
+    let mut command = Command::new(tool);
+    command
+        .args("--remove-name-section --remove-producers-section --target web --out-name bowknot".split(' '));
+    command.args(options).arg("--out-dir").arg(folder);
+    succeed(command.arg(wasm))
+}
+
+/// The tool of the right version; installs it unless it is there.
+fn bindgen(root: &Path, target: &Path) -> Result<PathBuf> {
+    let version = bindgen_version(root)?;
+    if let Some(tool) = found(target, &version) {
+        return Ok(tool);
+    }
+    println!("==> installing wasm-bindgen {version}, which takes some minutes once");
+    let mut install = cargo(root, "install wasm-bindgen-cli --quiet --version");
+    install.arg(&version).arg("--root").arg(target.join("xtask"));
+    succeed(&mut install)?;
+    found(target, &version).ok_or_else(|| Error::other("cargo has installed another version of wasm-bindgen"))
+}
+
+/// The tool in the target folder, or on the path.
+fn found(target: &Path, version: &str) -> Option<PathBuf> {
+    let own = target.join("xtask/bin").join(format!("wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
+    let wanted = format!("wasm-bindgen {version}");
+    [own, PathBuf::from("wasm-bindgen")].into_iter().find(|tool| {
+        let output = Command::new(tool).arg("--version").stderr(Stdio::null()).output();
+        output.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).trim() == wanted)
+    })
+}
+
+/// The version of the crate `wasm-bindgen` in `Cargo.lock`.
+fn bindgen_version(root: &Path) -> Result<String> {
+    let lock = fs::read_to_string(root.join("Cargo.lock"))?;
+    let entry =
+        lock.split_once("name = \"wasm-bindgen\"\nversion = \"").and_then(|(_, rest)| rest.split_once('"'));
+    entry.map(|(version, _)| version.to_owned()).ok_or_else(|| Error::other("Cargo.lock has no wasm-bindgen"))
+}
+
+/// Opens the page in a browser and compares what it computes with the command, which is built first.
+fn test(root: &Path, target: &Path) -> Result<()> {
+    let command = bowknot::build(root).map_err(Error::other)?;
+    let (folder, tests) = (target.join("xtask/web"), root.join(CRATE).join("tests"));
+    venv::ensure(&folder, &tests.join("requirements.txt"))?;
+    let mut pytest = Command::new(venv::python(&folder));
+    // What they print, frame rates and errors, is part of the result.
+    pytest.args(["-m", "pytest", "--quiet", "-rs", "--capture=no", "-p", "no:cacheprovider"]).arg(tests);
+    succeed(pytest.env("BOWKNOT_COMMAND", command).env("BOWKNOT_TARGET", target).current_dir(root))
+}
+
+/// Prints the size of each file of a folder and of all, as they are and compressed. Returns the latter.
+fn report(folder: &Path) -> Result<usize> {
+    println!("{}", folder.display());
+    let mut files = Vec::new();
+    list(folder, &mut files)?;
+    let mut total = [0, 0];
+    for file in &files {
+        let sizes = [fs::metadata(file)?.len() as usize, compressed(file)?];
+        total = [total[0] + sizes[0], total[1] + sizes[1]];
+        // Small ones are of no interest.
+        if sizes[0] > 50_000 {
+            let name = file.strip_prefix(folder).unwrap_or(file);
+            println!("  {:9} bytes, {:9} compressed  {}", sizes[0], sizes[1], name.display());
+        }
+    }
+    println!("  {:9} bytes, {:9} compressed  in all", total[0], total[1]);
+    Ok(total[1])
+}
+
+/// The size of a file compressed by gzip, which most servers do; its own where there is no gzip.
+fn compressed(file: &Path) -> Result<usize> {
+    let output = Command::new("gzip").args(["-9", "--stdout"]).arg(file).output();
+    Ok(match output {
+        Ok(output) if output.status.success() => output.stdout.len(),
+        _ => fs::metadata(file)?.len() as usize,
+    })
+}
+
+/// The files of a folder and of those in it, sorted.
+fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
+    let mut entries: Vec<PathBuf> =
+        fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
+    entries.sort();
+    for entry in entries {
+        if entry.is_dir() { list(&entry, files)? } else { files.push(entry) }
+    }
+    Ok(())
+}
+
+/// Copies the files of a folder.
+fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+    let mut files = Vec::new();
+    list(from, &mut files)?;
+    for file in files {
+        let place = to.join(file.strip_prefix(from).unwrap_or(&file));
+        fs::create_dir_all(place.parent().unwrap_or(to))?;
+        fs::copy(&file, place)?;
+    }
+    Ok(())
+}
+
+/// Bytes as base64 text.
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let word = (0..3).fold(0u32, |word, k| word << 8 | u32::from(chunk.get(k).copied().unwrap_or(0)));
+        for k in 0..4 {
+            let digit = DIGITS[(word >> (18 - 6 * k) & 63) as usize];
+            text.push(if k <= chunk.len() { char::from(digit) } else { '=' });
+        }
+    }
+    text
+}
+
+fn succeed(command: &mut Command) -> Result<()> {
+    if command.status()?.success() { Ok(()) } else { Err(Error::other(format!("{command:?} failed"))) }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn base64_is_that_of_rfc_4648() {
+        for (bytes, text) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
+            assert_eq!(super::base64(bytes.as_bytes()), text);
+        }
+    }
+}
