@@ -104,7 +104,7 @@ impl Bend {
         let openness = (1.0 + f.t.dot(&g.t)).max(MIN_OPENNESS);
         let curvature = f.t.cross(&g.t) * (2.0 / openness);
         let carried = transported(&f.d1, &f.t, &g.t);
-        let twist = carried.cross(&g.d1).dot(&g.t).atan2(carried.dot(&g.d1));
+        let twist = libm::atan2(carried.cross(&g.d1).dot(&g.t), carried.dot(&g.d1));
         let k1 = curvature.dot(&(f.d2 + g.d2)) * 0.5;
         let k2 = -curvature.dot(&(f.d1 + g.d1)) * 0.5;
         Self { frames, curvature, openness, values: [k1, k2, twist] }
