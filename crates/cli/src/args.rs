@@ -35,6 +35,23 @@ pub enum Command {
     Render(RenderOptions),
     /// Print the counts and the size of a scene or a mesh
     Info(InfoOptions),
+    /// Print the completions of a shell
+    Completions(CompletionsOptions),
+    /// Write the manual pages, one per command, into a folder
+    Man(ManOptions),
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsOptions {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManOptions {
+    /// The folder; it is made if it is not there
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
 }
 
 #[derive(Debug, Args)]

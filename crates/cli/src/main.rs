@@ -19,6 +19,7 @@ mod info;
 mod interrupt;
 mod near_starts;
 mod output;
+mod pages;
 mod progress;
 #[cfg(feature = "render")]
 mod render;
@@ -52,6 +53,8 @@ fn main() -> ExitCode {
         #[cfg(feature = "render")]
         Command::Render(options) => render::render(&options),
         Command::Info(options) => info::info(&options),
+        Command::Completions(options) => pages::completions(&options),
+        Command::Man(options) => pages::man(&options),
     });
     match result {
         Ok(Exit::Success) => ExitCode::SUCCESS,

@@ -26,7 +26,13 @@ pub fn run(root: &Path, arguments: &[&str]) -> ExitCode {
     }
 }
 
-fn pack_and_test(root: &Path, target: &Path, mut wheels: Vec<PathBuf>, with_tests: bool) -> Result<PathBuf> {
+/// Packs the wheels, or one that it builds if there are none; the path of the zip.
+pub fn pack_and_test(
+    root: &Path,
+    target: &Path,
+    mut wheels: Vec<PathBuf>,
+    with_tests: bool,
+) -> Result<PathBuf> {
     if wheels.is_empty() {
         if !wheel::build(&mut wheel::command(root, target))? {
             return Err(Error::other("maturin built no wheel"));

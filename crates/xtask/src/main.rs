@@ -13,6 +13,7 @@
 //! | `twins` | writes the CPU twins of the kernels from their shaders |
 //! | `wheel` | builds the Python package as a release uploads it |
 //! | `blender` | packs the extension for Blender, with the wheel in it |
+//! | `dist` | builds all that a release uploads |
 //! | `web` | builds the page and the npm packages |
 //! | `mutations` | makes mistakes in a copy of the code, and requires that the safety tests catch each |
 //!
@@ -23,6 +24,7 @@
 mod blender;
 mod bowknot;
 mod check;
+mod dist;
 mod docs;
 mod faults;
 mod hashes;
@@ -59,6 +61,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask wheel [--test]
        cargo xtask blender [--test] [WHEEL..]
        cargo xtask web [--test]
+       cargo xtask dist [--check]
        cargo xtask notebooks [NAME..]
 
 check     run what CI runs, in named steps: format, \
@@ -116,6 +119,10 @@ blender   pack the extension for Blender, in target/blender, with the wheels nam
 web       build the page of crates/web into target/web, which any static server serves, and the npm packages into \
 target/npm
           --test        open the page in Chromium and compare with the command; needs Python with venv
+dist      build all that a release uploads, into target/dist: the command with completions, manual pages and licenses, the
+          libraries for C, the wheel, the extension for Blender, the page and the npm packages, checksums; needs what the
+          steps above need
+          --check       build the archives of the command and of the libraries alone, and unpack and run the command
 notebooks execute the notebooks of docs/notebooks, all or those named, with the wheel of this \
 commit, and write their outputs
           into them; needs Python with venv, and a graphics driver";
@@ -159,6 +166,8 @@ fn main() -> ExitCode {
         {
             blender::run(&workspace::root(), arguments)
         }
+        ["dist"] => dist::run(&workspace::root(), false),
+        ["dist", "--check"] => dist::run(&workspace::root(), true),
         ["web"] => web::run(&workspace::root(), false),
         ["web", "--test"] => web::run(&workspace::root(), true),
         ["notebooks", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {

@@ -55,7 +55,7 @@ pub fn run(root: &Path, with_tests: bool) -> ExitCode {
 }
 
 /// Builds the page into `target/web` and the packages into `target/npm`, and prints how large they are.
-fn build(root: &Path, target: &Path) -> Result<()> {
+pub fn build(root: &Path, target: &Path) -> Result<()> {
     let mut build = cargo(root, "build --profile wasm --package bowknot-web --target");
     build.arg(TARGET).env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", FLAGS);
     succeed(&mut build)?;

@@ -21,6 +21,8 @@ mod interruptions;
 /// Runs that are killed.
 #[cfg(unix)]
 mod kills;
+/// Completions and manual pages.
+mod pages;
 /// Pictures of runs.
 #[cfg(feature = "render")]
 mod render;
