@@ -42,6 +42,8 @@ mod runs;
 mod simulation;
 /// Bodies at rest: falling asleep, waking, what sleep costs.
 mod sleep;
+/// Shapes and periods of textbooks.
+mod theory;
 
 use bowknot::Scene;
 
