@@ -92,7 +92,7 @@ fn a_strip_of_cloth_overhangs_by_its_bending_length() {
 /// n edges with masses at their ends have I = M l^2 (1/3 + 1/(6 n^2)).
 #[test]
 fn a_rod_swings_with_the_period_of_a_pendulum() {
-    let (length, edges, amplitude) = (0.3, 10.0, 5.0_f64.to_radians());
+    let (length, edges, amplitude): (f64, f64, f64) = (0.3, 10.0, 5.0_f64.to_radians());
     let text = "[solver.sleep]\nenabled = false\n[simulation]\ndt = 0.004\nintegrator = \"sdirk2\"\n\
                 [[body]]\nname = \"rod\"\nkind = \"strands\"\nmaterial = \"straw\"\nrotate = [0, 5, 0]\n\
                 shape = { type = \"strands\", count = 1, length = 0.3, segments = 10 }\n\
