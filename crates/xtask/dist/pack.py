@@ -140,7 +140,8 @@ def others(target: Path, out: Path, version: str) -> None:
         found = sorted((target / folder).glob(pattern))
         if not found:
             raise SystemExit(f"{target / folder} has no {pattern}")
-        shutil.copy2(found[-1], out)
+        # Beside the archive of the command, the name says what the zip is.
+        shutil.copy2(found[-1], out / found[-1].name.replace("bowknot-", "bowknot-blender-") if folder == "blender" else out)
     archive(out / f"bowknot-web-{version}.tar.gz", folder_files(target / "web"))
     for name in ("bowknot", "bowknot-compat"):
         # As `npm pack` does: all is in a folder `package`.
