@@ -55,9 +55,9 @@ pub(crate) unsafe fn array<'a, T>(what: &str, pointer: *const T, count: usize) -
 ///
 /// # Safety
 /// The array is null or has that much room, `count` is null or points to a number, and nothing else uses either.
-pub(crate) unsafe fn write<T>(
+pub(crate) unsafe fn write<T: Copy>(
     what: &str,
-    entries: impl ExactSizeIterator<Item = T>,
+    entries: &[T],
     array: *mut T,
     room: usize,
     count: *mut usize,
@@ -73,10 +73,8 @@ pub(crate) unsafe fn write<T>(
     if room < len || !array.is_aligned() {
         return Err(input(format!("{what}: {len} entries, but the array has room for {room}")));
     }
-    for (k, entry) in entries.enumerate() {
-        // SAFETY: by the contract there is room for `room` entries, and k < len <= room.
-        unsafe { array.add(k).write(entry) };
-    }
+    // SAFETY: by the contract there is room for `room` entries, at least `len`, and they are not those of Rust.
+    unsafe { std::ptr::copy_nonoverlapping(entries.as_ptr(), array, len) };
     Ok(())
 }
 
@@ -90,11 +88,8 @@ pub(crate) fn points(what: &str, xyz: &[f64]) -> Result<Vec<Point>, Failure> {
 }
 
 /// The numbers of points or vectors, by their coordinates.
-pub(crate) fn numbers<'a>(
-    rows: impl ExactSizeIterator<Item = &'a Vector>,
-) -> impl ExactSizeIterator<Item = f64> {
-    let numbers: Vec<f64> = rows.flat_map(|row| [row.x, row.y, row.z]).collect();
-    numbers.into_iter()
+pub(crate) fn numbers<'a>(rows: impl Iterator<Item = &'a Vector>) -> Vec<f64> {
+    rows.flat_map(|row| [row.x, row.y, row.z]).collect()
 }
 
 /// Elements of N vertices each.

@@ -1,10 +1,10 @@
 //! Simulations of a scene.
 
-use crate::error::{BowknotStatus, Failure, guarded, input};
+use crate::error::{BowknotStatus, guarded, input};
 use crate::memory::{array, exclusive, numbers, points, shared, text, write};
 use bowknot::check::StateOptions;
-use bowknot::geometry::Vector;
-use bowknot::{Scene, Simulator};
+use bowknot::geometry::{Point, Topology, Vector};
+use bowknot::{DriveError, Scene, Simulator};
 use std::ffi::{CString, c_char};
 
 /// A running simulation.
@@ -147,14 +147,8 @@ pub unsafe extern "C" fn bowknot_simulator_positions(
     positions: *mut f64,
     count: usize,
 ) -> BowknotStatus {
-    guarded(|| {
-        // SAFETY: by the contract.
-        unsafe {
-            let simulator = shared("simulator", simulator)?;
-            let rows = numbers(simulator.inner.positions().iter().map(|x| &x.coords));
-            write("positions", rows, not_null("positions", positions)?, count, std::ptr::null_mut())
-        }
-    })
+    // SAFETY: by the contract.
+    unsafe { rows(simulator, positions, count, |inner| numbers(inner.positions().iter().map(|x| &x.coords))) }
 }
 
 /// Writes the velocities [m/s], as `bowknot_simulator_positions` does positions.
@@ -167,14 +161,8 @@ pub unsafe extern "C" fn bowknot_simulator_velocities(
     velocities: *mut f64,
     count: usize,
 ) -> BowknotStatus {
-    guarded(|| {
-        // SAFETY: by the contract.
-        unsafe {
-            let simulator = shared("simulator", simulator)?;
-            let rows = numbers(simulator.inner.velocities().iter());
-            write("velocities", rows, not_null("velocities", velocities)?, count, std::ptr::null_mut())
-        }
-    })
+    // SAFETY: by the contract.
+    unsafe { rows(simulator, velocities, count, |inner| numbers(inner.velocities().iter())) }
 }
 
 /// Writes the vertices of the triangles, three for each, and how many numbers that are to `count`, which holds the room of
@@ -188,14 +176,8 @@ pub unsafe extern "C" fn bowknot_simulator_triangles(
     triangles: *mut u32,
     count: *mut usize,
 ) -> BowknotStatus {
-    guarded(|| {
-        // SAFETY: by the contract.
-        unsafe {
-            let (simulator, room) = (shared("simulator", simulator)?, *exclusive("count", count)?);
-            let all = simulator.inner.world().collision.topology().triangles.concat();
-            write("triangles", all.into_iter(), triangles, room, count)
-        }
-    })
+    // SAFETY: by the contract.
+    unsafe { vertices_of(simulator, triangles, count, |topology| topology.triangles.concat()) }
 }
 
 /// Writes the vertices of the edges of strands, two for each, as `bowknot_simulator_triangles` does triangles.
@@ -208,16 +190,11 @@ pub unsafe extern "C" fn bowknot_simulator_edges(
     edges: *mut u32,
     count: *mut usize,
 ) -> BowknotStatus {
-    guarded(|| {
-        // SAFETY: by the contract.
-        unsafe {
-            let (simulator, room) = (shared("simulator", simulator)?, *exclusive("count", count)?);
-            let topology = simulator.inner.world().collision.topology();
-            let all: Vec<u32> =
-                topology.strand_edges.iter().flat_map(|&e| topology.edges[e as usize]).collect();
-            write("edges", all.into_iter(), edges, room, count)
-        }
-    })
+    let all = |topology: &Topology| {
+        topology.strand_edges.iter().flat_map(|&e| topology.edges[e as usize]).collect()
+    };
+    // SAFETY: by the contract.
+    unsafe { vertices_of(simulator, edges, count, all) }
 }
 
 /// How many bodies and obstacles with a mesh there are.
@@ -291,14 +268,8 @@ pub unsafe extern "C" fn bowknot_simulator_set_pin_targets(
     targets: *const f64,
     count: usize,
 ) -> BowknotStatus {
-    guarded(|| {
-        // SAFETY: by the contract.
-        unsafe {
-            let (name, targets) =
-                (text("name", name)?, points("targets", array("targets", targets, count)?)?);
-            Ok(exclusive("simulator", simulator)?.inner.set_pin_targets(name, &targets)?)
-        }
-    })
+    // SAFETY: by the contract.
+    unsafe { lead(simulator, name, targets, count, Simulator::set_pin_targets) }
 }
 
 /// Removes a pin.
@@ -327,14 +298,8 @@ pub unsafe extern "C" fn bowknot_simulator_set_obstacle_targets(
     targets: *const f64,
     count: usize,
 ) -> BowknotStatus {
-    guarded(|| {
-        // SAFETY: by the contract.
-        unsafe {
-            let (name, targets) =
-                (text("name", name)?, points("targets", array("targets", targets, count)?)?);
-            Ok(exclusive("simulator", simulator)?.inner.set_obstacle_targets(name, &targets)?)
-        }
-    })
+    // SAFETY: by the contract.
+    unsafe { lead(simulator, name, targets, count, Simulator::set_obstacle_targets) }
 }
 
 /// Sets the acceleration of gravity [m/s^2].
@@ -374,7 +339,62 @@ pub unsafe extern "C" fn bowknot_simulator_intersections(
     })
 }
 
-/// An array that must be there.
-fn not_null<T>(what: &str, array: *mut T) -> Result<*mut T, Failure> {
-    if array.is_null() { Err(input(format!("{what} is NULL"))) } else { Ok(array) }
+/// Writes x y z of each vertex to an array with room for `count` numbers.
+///
+/// # Safety
+/// As for `bowknot_simulator_positions`.
+unsafe fn rows(
+    simulator: *const BowknotSimulator,
+    array: *mut f64,
+    count: usize,
+    rows: impl FnOnce(&Simulator) -> Vec<f64>,
+) -> BowknotStatus {
+    guarded(|| {
+        // SAFETY: by the contract.
+        unsafe {
+            // NULL, by which other calls only count, is refused: the caller knows the count.
+            let (simulator, _) = (shared("simulator", simulator)?, exclusive("the array", array)?);
+            write("the array", &rows(&simulator.inner), array, count, std::ptr::null_mut())
+        }
+    })
+}
+
+/// Writes the vertices of elements.
+///
+/// # Safety
+/// As for `bowknot_simulator_triangles`.
+unsafe fn vertices_of(
+    simulator: *const BowknotSimulator,
+    array: *mut u32,
+    count: *mut usize,
+    elements: impl FnOnce(&Topology) -> Vec<u32>,
+) -> BowknotStatus {
+    guarded(|| {
+        // SAFETY: by the contract.
+        unsafe {
+            let (simulator, room) = (shared("simulator", simulator)?, *exclusive("count", count)?);
+            write("the array", &elements(simulator.inner.world().collision.topology()), array, room, count)
+        }
+    })
+}
+
+/// Leads a pin or an obstacle.
+///
+/// # Safety
+/// As for `bowknot_simulator_set_pin_targets`.
+unsafe fn lead(
+    simulator: *mut BowknotSimulator,
+    name: *const c_char,
+    targets: *const f64,
+    count: usize,
+    lead: impl FnOnce(&mut Simulator, &str, &[Point]) -> Result<(), DriveError>,
+) -> BowknotStatus {
+    guarded(|| {
+        // SAFETY: by the contract.
+        unsafe {
+            let (name, targets) =
+                (text("name", name)?, points("targets", array("targets", targets, count)?)?);
+            Ok(lead(&mut exclusive("simulator", simulator)?.inner, name, &targets)?)
+        }
+    })
 }

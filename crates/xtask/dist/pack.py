@@ -97,25 +97,27 @@ def host() -> str:
     return next(line.removeprefix("host: ") for line in version.splitlines() if line.startswith("host: "))
 
 
+def with_licenses(package: str, readme: str, files: dict[str, Path | bytes]) -> dict[str, Path | bytes]:
+    """These files with what to read first, and the licenses of a package and of what is linked into it."""
+    ours = {name: ROOT / name for name in ("LICENSE-MIT", "LICENSE-APACHE")}
+    return {**files, **ours, "README.md": ROOT / readme, "LICENSES-OF-DEPENDENCIES.txt": licenses(package)}
+
+
 def command_archive(target: Path, out: Path, version: str) -> Path:
     """The command with completions, manual pages and licenses."""
     name = "bowknot.exe" if platform.system() == "Windows" else "bowknot"
     files: dict[str, Path | bytes] = {
         f"bin/{name}": target / "shipped" / name,
-        "README.md": ROOT / "crates/cli/README.md",
         "CHANGELOG.md": ROOT / "CHANGELOG.md",
-        "LICENSE-MIT": ROOT / "LICENSE-MIT",
-        "LICENSE-APACHE": ROOT / "LICENSE-APACHE",
-        "LICENSES-OF-DEPENDENCIES.txt": licenses("bowknot-cli"),
         **folder_files(target / "xtask/dist/completions", "completions/"),
         **folder_files(target / "xtask/dist/man", "share/man/man1/"),
     }
     path = out / f"bowknot-{version}-{system()}.tar.gz"
-    archive(path, files)
+    archive(path, with_licenses("bowknot-cli", "crates/cli/README.md", files))
     return path
 
 
-def library_archive(target: Path, out: Path, version: str) -> Path:
+def library_archive(target: Path, out: Path, version: str) -> None:
     """The libraries for C with their header and example."""
     names = ("libbowknot_c.a", "libbowknot_c.so", "libbowknot_c.dylib", "bowknot_c.dll", "bowknot_c.lib")
     files: dict[str, Path | bytes] = {
@@ -124,14 +126,9 @@ def library_archive(target: Path, out: Path, version: str) -> Path:
     files |= {
         "include/bowknot.h": ROOT / "crates/capi/include/bowknot.h",
         "examples/drape.c": ROOT / "crates/capi/examples/drape.c",
-        "README.md": ROOT / "crates/capi/README.md",
-        "LICENSE-MIT": ROOT / "LICENSE-MIT",
-        "LICENSE-APACHE": ROOT / "LICENSE-APACHE",
-        "LICENSES-OF-DEPENDENCIES.txt": licenses("bowknot-capi"),
     }
-    path = out / f"bowknot-c-{version}-{system()}.tar.gz"
-    archive(path, files)
-    return path
+    files = with_licenses("bowknot-capi", "crates/capi/README.md", files)
+    archive(out / f"bowknot-c-{version}-{system()}.tar.gz", files)
 
 
 def others(target: Path, out: Path, version: str) -> None:

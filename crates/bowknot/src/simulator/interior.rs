@@ -74,7 +74,7 @@ impl Interior {
         x: &mut [Point],
     ) -> Result<usize, StepError> {
         let first = self.first;
-        carry_frame_points(&self.rods, prescribed, y, x);
+        carry_frame_points(&self.rods, |v| prescribed[v], y, x);
         let moved = |v: &u32| (*v as usize) < first && x[*v as usize] != y[*v as usize];
         if !self.tets.iter().flatten().any(moved) {
             return Ok(0);
@@ -121,10 +121,16 @@ impl Interior {
     }
 }
 
-/// Moves the frame points of `rods` but the `held` ones along with their edges, which were at `from` and are at `x` [m].
-pub(super) fn carry_frame_points(rods: &[[u32; 3]], held: &[bool], from: &[Point], x: &mut [Point]) {
+/// Moves the frame points of `rods` but those that are `held` along with their edges, which were at `from` and are at
+/// `x` [m].
+pub(super) fn carry_frame_points(
+    rods: &[[u32; 3]],
+    held: impl Fn(usize) -> bool,
+    from: &[Point],
+    x: &mut [Point],
+) {
     for [a, b, p] in rods.iter().map(|rod| rod.map(|v| v as usize)) {
-        if !held[p] && (x[a] != from[a] || x[b] != from[b]) {
+        if !held(p) && (x[a] != from[a] || x[b] != from[b]) {
             x[p] = carried_frame_point([&from[a], &from[b]], [&x[a], &x[b]], &from[p]);
         }
     }

@@ -145,8 +145,9 @@ impl Bend {
 }
 
 impl RodTurn {
-    /// Between the edges (0, 1) and (1, 2) of the `nodes`, whose frame points are 3 and 4. Its rest shape is straight
-    /// and not twisted, or that of the rest positions `rest`. None if an edge has no length at rest.
+    /// The bending and twist between the edges (0, 1) and (1, 2) of the `nodes`, whose frame points are 3 and 4. The rest
+    /// shape is straight without twist, or that of the rest positions `rest`. It has this `share` of the stiffness of the
+    /// material. Returns `None` if an edge has no length at rest.
     pub fn new(nodes: [u32; 5], rest: &[Vector; 5], material: &StrandMaterial, share: f64) -> Option<Self> {
         let lengths = [rest[1] - rest[0], rest[2] - rest[1]].map(|edge| edge.norm());
         let bend = Bend::new(rest, lengths);
@@ -163,15 +164,28 @@ impl RodTurn {
         lengths.iter().all(|length| *length > 0.0 && length.is_finite()).then_some(turn)
     }
 
+    /// k1, k2 and m at the start of the step, and the factor of their damping; None without damping.
+    fn before(&self, start: Option<Start<'_, 5>>) -> Option<([f64; 3], f64)> {
+        let start = start.filter(|_| self.damping > 0.0)?;
+        Some((Bend::new(start.x, self.lengths).values, self.damping * start.rate))
+    }
+
+    /// The energy [J] at these k1, k2 and m.
+    fn energy_of(&self, values: &[f64; 3], before: Option<([f64; 3], f64)>) -> f64 {
+        let sum = |other: &[f64; 3]| -> f64 {
+            (0..3).map(|k| self.stiffness[k] * (values[k] - other[k]) * (values[k] - other[k])).sum()
+        };
+        0.5 * (sum(&self.rest) + before.map_or(0.0, |(before, factor)| factor * sum(&before)))
+    }
+
     /// For k1, k2 and m, the derivative of the energy by it [N m] and the second one.
-    fn moments(&self, values: &[f64; 3], start: Option<Start<'_, 5>>) -> [[f64; 2]; 3] {
+    fn moments(&self, values: &[f64; 3], before: Option<([f64; 3], f64)>) -> [[f64; 2]; 3] {
         let mut moments = std::array::from_fn(|k| {
             let stiffness = self.stiffness[k];
             [stiffness * (values[k] - self.rest[k]), stiffness]
         });
-        if let Some(start) = start.filter(|_| self.damping > 0.0) {
-            let factor = self.damping * start.rate;
-            for (k, before) in Bend::new(start.x, self.lengths).values.iter().enumerate() {
+        if let Some((before, factor)) = before {
+            for (k, before) in before.iter().enumerate() {
                 moments[k][0] += factor * self.stiffness[k] * (values[k] - before);
                 moments[k][1] += factor * self.stiffness[k];
             }
@@ -187,15 +201,7 @@ impl Element<5> for RodTurn {
     }
 
     fn energy(&self, x: &[Vector; 5], start: Option<Start<'_, 5>>) -> f64 {
-        let values = Bend::new(x, self.lengths).values;
-        let sum = |other: &[f64; 3]| -> f64 {
-            (0..3).map(|k| self.stiffness[k] * (values[k] - other[k]) * (values[k] - other[k])).sum()
-        };
-        let mut twice = sum(&self.rest);
-        if let Some(start) = start.filter(|_| self.damping > 0.0) {
-            twice += self.damping * start.rate * sum(&Bend::new(start.x, self.lengths).values);
-        }
-        0.5 * twice
+        self.energy_of(&Bend::new(x, self.lengths).values, self.before(start))
     }
 
     type Frame = ();
@@ -207,13 +213,13 @@ impl Element<5> for RodTurn {
         start: Option<Start<'_, 5>>,
         _: Filter,
     ) -> Linearization<5> {
-        let bend = Bend::new(x, self.lengths);
+        let (bend, before) = (Bend::new(x, self.lengths), self.before(start));
         let mut out = Linearization {
-            energy: self.energy(x, start),
+            energy: self.energy_of(&bend.values, before),
             gradient: [Vector::zeros(); 5],
             hessian: [[Matrix3::zeros(); 5]; 5],
         };
-        for (gradient, [moment, stiffness]) in bend.gradients().iter().zip(self.moments(&bend.values, start))
+        for (gradient, [moment, stiffness]) in bend.gradients().iter().zip(self.moments(&bend.values, before))
         {
             for a in 0..5 {
                 out.gradient[a] += gradient[a] * moment;
@@ -228,7 +234,9 @@ impl Element<5> for RodTurn {
     fn gradient(&self, x: &[Vector; 5], start: Option<Start<'_, 5>>) -> [Vector; 5] {
         let bend = Bend::new(x, self.lengths);
         let mut sum = [Vector::zeros(); 5];
-        for (gradient, [moment, _]) in bend.gradients().iter().zip(self.moments(&bend.values, start)) {
+        for (gradient, [moment, _]) in
+            bend.gradients().iter().zip(self.moments(&bend.values, self.before(start)))
+        {
             sum.iter_mut().zip(gradient).for_each(|(sum, gradient)| *sum += gradient * moment);
         }
         sum

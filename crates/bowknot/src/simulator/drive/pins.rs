@@ -103,23 +103,23 @@ impl Simulator {
         self.set_pin_targets(name, &targets)
     }
 
-    /// The `targets` of a pin [m], with those of the frame points that it holds if they are left out.
+    /// The `targets` of a pin [m], with those of the frame points that it holds if they alone are left out.
     fn with_frame_points(&self, pin: usize, targets: &[Point]) -> Vec<Point> {
         let vertices = &self.world.pins[pin].vertices;
         let mut all = targets.to_vec();
-        let rods = || self.world.bodies.iter().flat_map(|body| &body.rods);
-        if rods().next().is_none() || targets.len() >= vertices.len() {
+        let (own, left_out) = vertices.split_at(targets.len().min(vertices.len()));
+        // Frame points are the last vertices of a pin, in the order of their edges.
+        let rods = self.world.bodies.iter().flat_map(|body| &body.rods);
+        let rods: Vec<&[u32; 3]> = rods.filter(|rod| left_out.binary_search(&rod[2]).is_ok()).collect();
+        if rods.len() < left_out.len() {
             return all;
         }
-        let mut x = self.positions.clone();
-        vertices.iter().zip(targets).for_each(|(&v, target)| x[v as usize] = *target);
-        for &left_out in &vertices[targets.len()..] {
-            let Some([a, b, p]) = rods().find(|rod| rod[2] == left_out).map(|rod| rod.map(|v| v as usize))
-            else {
-                break;
-            };
-            let [from, to] = [&self.positions, &x].map(|x| [&x[a], &x[b]]);
-            all.push(carried_frame_point(from, to, &self.positions[p]));
+        let target = |v: u32| own.iter().position(|&other| other == v).map(|k| &targets[k]);
+        for &[a, b, p] in rods {
+            let [from_a, from_b, from_p] = [a, b, p].map(|v| &self.positions[v as usize]);
+            // A pin that holds a frame point holds both ends of its edge.
+            let to = [target(a).unwrap_or(from_a), target(b).unwrap_or(from_b)];
+            all.push(carried_frame_point([from_a, from_b], to, from_p));
         }
         all
     }

@@ -101,8 +101,7 @@ fn world_of(scene: &Scene, before: &Scene, world_before: &World) -> Result<World
         let Some(then) = world_before.bodies.iter().find(|then| then.name == now.name) else { continue };
         if now.rods.len() != then.rods.len() {
             return Err(SceneError::Model(format!(
-                "body {}: its twist_stiffness is 0 or is not from the start on: it can change while a simulation runs, but \
-                 neither begin nor end",
+                "body {}: twist_stiffness cannot become 0, or cease to be 0, while a simulation runs",
                 now.name
             )));
         }

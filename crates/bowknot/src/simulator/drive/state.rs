@@ -45,8 +45,7 @@ impl Simulator {
         check("positions", name, count, positions.iter().map(|x| &x.coords))?;
         let before = self.positions.clone();
         in_mesh_order(&self.world, index, positions).for_each(|(v, x)| self.positions[v] = *x);
-        let held = vec![false; before.len()];
-        carry_frame_points(&self.world.bodies[index].rods, &held, &before, &mut self.positions);
+        carry_frame_points(&self.world.bodies[index].rods, |_| false, &before, &mut self.positions);
         let carried = self.carried();
         let kept = self.without_contacts_of(index, &carried);
         let placed = self.refuse_intersections(name).and_then(|()| self.take_out(kept));
