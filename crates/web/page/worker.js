@@ -8,6 +8,8 @@ const HAND = "the pointer";
 
 let simulator = null;
 let playing = false;
+/** How many times as stiff as by its scene all is. */
+let stiff = 1;
 let judged = 0;
 let intersections = 0;
 /** The vertex that is held, where it is to go, and its largest speed [m/s]. */
@@ -39,7 +41,8 @@ function layout() {
 function open(scene, { stiffness, friction }) {
     const next = new Simulator(scene);
     next.setMeasured(false);
-    if (stiffness !== 1) next.setStiffness(stiffness);
+    if (stiffness !== 1) next.scaleStiffness(stiffness);
+    stiff = stiffness;
     if (friction !== null) next.setFrictionOfAll(friction);
     simulator?.free();
     [simulator, hand, judged, intersections] = [next, null, 0, 0];
@@ -115,7 +118,10 @@ const actions = {
         advance();
     },
     step: () => step(),
-    stiffness: ({ factor }) => simulator.setStiffness(factor),
+    stiffness: ({ factor }) => {
+        simulator.scaleStiffness(factor / stiff);
+        stiff = factor;
+    },
     friction: ({ value }) => simulator.setFrictionOfAll(value),
     grab: ({ vertex, speed }) => {
         const { name, number } = inMesh(vertex);
@@ -123,6 +129,7 @@ const actions = {
             simulator.addPin(HAND, name, new Uint32Array([number]));
             hand = { vertex, speed, target: null };
         } catch (error) {
+            if (error.name !== "InputError") throw error;
             // A pin of the scene holds it: no reason to stop.
             say({ is: "warned", warnings: [error.message] });
         }

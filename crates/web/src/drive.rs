@@ -128,13 +128,12 @@ impl Simulator {
         self.inner.set_material(body, material).map_err(error::simulation)
     }
 
-    /// Makes every body `factor` times as stiff as by its scene, in stretching, shearing and bending.
-    #[wasm_bindgen(js_name = setStiffness)]
-    pub fn set_stiffness(&mut self, factor: f64) -> Result<(), Thrown> {
-        if !(factor.is_finite() && factor > 0.0) {
-            return Err(input(format!("stiffness {factor} must be finite and above 0")));
+    /// Makes every body `ratio` times as stiff as it is, in stretching, shearing, bending and twisting.
+    #[wasm_bindgen(js_name = scaleStiffness)]
+    pub fn scale_stiffness(&mut self, ratio: f64) -> Result<(), Thrown> {
+        if !(ratio.is_finite() && ratio > 0.0) {
+            return Err(input(format!("ratio {ratio} must be finite and above 0")));
         }
-        let ratio = factor / self.stiffness;
         let stiffer: Vec<(String, Material)> = self
             .inner
             .scene()
@@ -145,7 +144,6 @@ impl Simulator {
         for (body, material) in stiffer {
             self.inner.set_material(&body, material).map_err(error::simulation)?;
         }
-        self.stiffness = factor;
         Ok(())
     }
 }
@@ -166,6 +164,7 @@ fn scaled(material: Material, ratio: f64) -> Material {
         Material::Strands(strand) => Material::Strands(StrandMaterial {
             stretch_stiffness: ratio * strand.stretch_stiffness,
             bend_stiffness: ratio * strand.bend_stiffness,
+            twist_stiffness: ratio * strand.twist_stiffness,
             ..strand
         }),
         other => other,

@@ -20,8 +20,6 @@ const NAMED: usize = 10;
 #[wasm_bindgen]
 pub struct Simulator {
     pub(crate) inner: bowknot::Simulator,
-    /// How many times as stiff as by its scene every body is.
-    pub(crate) stiffness: f64,
     judge: Option<KeptJudge>,
 }
 
@@ -69,7 +67,7 @@ impl Simulator {
     #[wasm_bindgen(constructor)]
     pub fn new(scene: &Scene) -> Result<Simulator, Thrown> {
         let inner = bowknot::Simulator::new(&scene.scene).map_err(error::simulation)?;
-        Ok(Self { inner, stiffness: 1.0, judge: None })
+        Ok(Self { inner, judge: None })
     }
 
     /// Makes one time step, and says what it did. An error leaves the state as it was.

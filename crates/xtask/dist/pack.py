@@ -119,7 +119,7 @@ def command_archive(target: Path, out: Path, version: str) -> Path:
 
 def library_archive(target: Path, out: Path, version: str) -> None:
     """The libraries for C with their header and example."""
-    names = ("libbowknot_c.a", "libbowknot_c.so", "libbowknot_c.dylib", "bowknot_c.dll", "bowknot_c.lib")
+    names = ("libbowknot_c.a", "libbowknot_c.so", "libbowknot_c.dylib", "bowknot_c.dll", "bowknot_c.dll.lib", "bowknot_c.lib")
     files: dict[str, Path | bytes] = {
         f"lib/{name}": target / "shipped" / name for name in names if (target / "shipped" / name).is_file()
     }
@@ -131,14 +131,12 @@ def library_archive(target: Path, out: Path, version: str) -> None:
     archive(out / f"bowknot-c-{version}-{system()}.tar.gz", files)
 
 
-def others(target: Path, out: Path, version: str) -> None:
-    """The wheel, the extension for Blender, the page and the npm packages."""
-    for folder, pattern in (("wheels", f"bowknot-{version}-*.whl"), ("blender", f"bowknot-{version}*.zip")):
-        found = sorted((target / folder).glob(pattern))
-        if not found:
-            raise SystemExit(f"{target / folder} has no {pattern}")
-        # Beside the archive of the command, the name says what the zip is.
-        shutil.copy2(found[-1], out / found[-1].name.replace("bowknot-", "bowknot-blender-") if folder == "blender" else out)
+def others(target: Path, out: Path, version: str, extension: Path) -> None:
+    """The extension for Blender, the wheel, the page and the npm packages."""
+    # Beside the archive of the command, the name says what the zip is.
+    shutil.copy2(extension, out / extension.name.replace("bowknot-", "bowknot-blender-", 1))
+    for wheel in (target / "wheels").glob(f"bowknot-{version}-*.whl"):
+        shutil.copy2(wheel, out)
     archive(out / f"bowknot-web-{version}.tar.gz", folder_files(target / "web"))
     for name in ("bowknot", "bowknot-compat"):
         # As `npm pack` does: all is in a folder `package`.
@@ -170,14 +168,14 @@ def main() -> None:
     parser.add_argument("--version", required=True)
     parser.add_argument("--target", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--check", action="store_true", help="the command and the libraries alone")
+    parser.add_argument("--blender", type=Path, help="the extension; without it, the command and the libraries alone")
     options = parser.parse_args()
     target, out, version = options.target, options.out, options.version
     command = command_archive(target, out, version)
     library_archive(target, out, version)
     try_command(command)
-    if not options.check:
-        others(target, out, version)
+    if options.blender is not None:
+        others(target, out, version, options.blender)
     files = sorted(path for path in out.iterdir() if path.is_file())
     sums = "".join(f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in files)
     (out / "SHA256SUMS").write_text(sums, encoding="utf-8")

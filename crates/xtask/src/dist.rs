@@ -5,7 +5,7 @@
 //! and owners are fixed, and their checksums.
 
 use crate::workspace::{cargo, target_folder};
-use crate::{blender, web, wheel};
+use crate::{blender, web};
 use std::fs;
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -39,22 +39,19 @@ fn build(root: &Path, target: &Path, check: bool) -> Result<PathBuf> {
     }
     let mut build =
         cargo(root, "build --profile shipped --locked --package bowknot-cli --package bowknot-capi");
-    succeed(build.env("RUSTFLAGS", remapped(root)))?;
+    succeed(build.env("CARGO_ENCODED_RUSTFLAGS", remapped(root)))?;
     let built = target.join("shipped");
     let command = built.join("bowknot").with_extension(std::env::consts::EXE_EXTENSION);
     pages(&command, &parts)?;
     if !check {
-        if !wheel::build(&mut wheel::command(root, target))? {
-            return Err(Error::other("maturin built no wheel"));
-        }
-        blender::pack_and_test(root, target, vec![wheel::newest(target)?], false)?;
         web::build(root, target)?;
     }
     let mut pack = Command::new("python3");
     pack.arg(root.join("crates/xtask/dist/pack.py")).args(["--version", env!("CARGO_PKG_VERSION")]);
     pack.arg("--target").arg(target).arg("--out").arg(&out);
-    if check {
-        pack.arg("--check");
+    if !check {
+        // With the wheel, which it builds.
+        pack.arg("--blender").arg(blender::pack_and_test(root, target, Vec::new(), false)?);
     }
     succeed(pack.current_dir(root))?;
     Ok(out)
@@ -74,13 +71,13 @@ fn pages(command: &Path, parts: &Path) -> Result<()> {
     succeed(Command::new(command).arg("man").arg(parts.join("man")))
 }
 
-/// Flags by which the paths in messages are not those of this machine.
+/// Flags by which the paths in messages are not those of this machine, as Cargo parts them.
 fn remapped(root: &Path) -> String {
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));
     let mut flags = format!("--remap-path-prefix={}=bowknot", root.display());
     if let Some(home) = home {
-        flags += &format!(" --remap-path-prefix={}=cargo", home.display());
+        flags += &format!("\x1f--remap-path-prefix={}=cargo", home.display());
     }
     flags
 }

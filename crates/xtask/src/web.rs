@@ -57,7 +57,8 @@ pub fn run(root: &Path, with_tests: bool) -> ExitCode {
 /// Builds the page into `target/web` and the packages into `target/npm`, and prints how large they are.
 pub fn build(root: &Path, target: &Path) -> Result<()> {
     let mut build = cargo(root, "build --profile wasm --package bowknot-web --target");
-    build.arg(TARGET).env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", FLAGS);
+    // Flags of the environment would take the place of these.
+    build.arg(TARGET).env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", FLAGS);
     succeed(&mut build)?;
     let wasm = target.join(TARGET).join("wasm/bowknot_web.wasm");
     let tool = bindgen(root, target)?;

@@ -83,10 +83,9 @@ class Bake:
             if self._canceled:
                 self.message = "Canceled before the first frame"
                 return
-            if not self._resume:
-                jobs.remove(where)
             self.what = "Simulating"
-            self._job = jobs.Job(self._gathering.description, where, files, resume=self._resume)
+            first = self._gathering.first
+            self._job = jobs.Job(self._gathering.description, where, files, first=first, resume=self._resume)
             self._job.start()
             while self._job.running:
                 self.progress = self._job.done / self._job.total
@@ -131,12 +130,19 @@ class Bake:
             )
 
     def _attach(self, where: Path, files: dict[str, str]) -> None:
+        if self._job is not None and isinstance(self._job.error, jobs.StartIntersects):
+            return  # The places are being looked at, in edit mode. The files of an earlier bake stay.
         found = jobs.about(where)
         kind = bpy.data.scenes[self._scene].bowknot.result
         for name, file in files.items():
             obj = bpy.data.objects.get(name)
-            if obj is not None and found is not None and found["files"].get(name) == file:
-                results.attach(obj, where / file, self._gathering.first, kind)
+            if found is None or found["files"].get(name) != file:
+                continue
+            if obj is None:
+                self.message += f". {name} was renamed or removed meanwhile: it has no motion"
+                continue
+            # An earlier bake that stays may begin at another frame.
+            results.attach(obj, where / file, found["first"], kind)
 
 
 def begin(context: bpy.types.Context, *, resume: bool) -> Bake:
@@ -161,9 +167,9 @@ def finish(bake: Bake) -> None:
 def stop(*_: object) -> None:
     """Ends the bake that goes on, if any, and waits for it: before another file is opened, for one."""
     global running
-    if running is not None:
-        running.close()
-        running = None
+    current, running = running, None
+    if current is not None:
+        current.close()
 
 
 def register() -> None:
@@ -204,7 +210,9 @@ def folder(scene: bpy.types.Scene) -> Path:
     """Where the caches of a scene are."""
     if _is_temporary(scene):
         return Path(bpy.app.tempdir) / "bowknot" / bpy.path.clean_name(scene.name)
-    return Path(bpy.path.abspath(scene.bowknot.folder or "//bowknot")).resolve() / bpy.path.clean_name(scene.name)
+    # Files beside each other, such as versions of a shot, must not share one.
+    name = bpy.path.clean_name(f"{Path(bpy.data.filepath).stem} {scene.name}")
+    return Path(bpy.path.abspath(scene.bowknot.folder or "//bowknot")).resolve() / name
 
 
 def _is_temporary(scene: bpy.types.Scene) -> bool:

@@ -86,16 +86,16 @@ class Gathering:
             self._scene.frame_set(back[0], subframe=back[1])
         known = {track.obj.name: track for track in obstacles}
         self.description = Description(
-            settings=_settings(self._scene),
+            settings=_settings(self._scene, self.last - self.first),
             bodies=[track.finish(known, self._unit) for track in bodies],
             obstacles=[track.finish() for track in obstacles],
         )
 
 
-def _settings(scene: bpy.types.Scene) -> Settings:
+def _settings(scene: bpy.types.Scene, frames: int) -> Settings:
     own = scene.bowknot
     return Settings(
-        frames=scene.frame_end - scene.frame_start,
+        frames=frames,
         frame_rate=scene.render.fps / scene.render.fps_base,
         steps=own.steps,
         gravity=tuple(map(float, scene.gravity)) if scene.use_gravity else (0.0, 0.0, 0.0),

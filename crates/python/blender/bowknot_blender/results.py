@@ -52,9 +52,10 @@ def detach(obj: bpy.types.Object) -> None:
             obj.modifiers.remove(modifier)
     if obj.type == "MESH" and obj.data.shape_keys is not None:
         _detach_keys(obj)
-    for name in obj.bowknot.muted.splitlines():
-        if name in obj.modifiers:
-            obj.modifiers[name].show_viewport = obj.modifiers[name].show_render = True
+    for line in obj.bowknot.muted.splitlines():
+        if line[2:] in obj.modifiers:
+            modifier = obj.modifiers[line[2:]]
+            modifier.show_viewport, modifier.show_render = line[0] == "1", line[1] == "1"
     obj.bowknot.muted = ""
 
 
@@ -98,9 +99,9 @@ def _attach_keys(obj: bpy.types.Object, cache: Path, first: int) -> None:
     muted = []
     for modifier in obj.modifiers[: stack.leading(obj)]:
         if modifier.show_viewport or modifier.show_render:
+            muted.append(f"{modifier.show_viewport:d}{modifier.show_render:d}{modifier.name}")
             # Shape keys come before modifiers, which would move the result again.
             modifier.show_viewport = modifier.show_render = False
-            muted.append(modifier.name)
     obj.bowknot.muted = "\n".join(muted)
     if obj.data.shape_keys is None:
         obj.shape_key_add(name="Basis", from_mix=False)

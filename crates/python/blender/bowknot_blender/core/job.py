@@ -56,10 +56,12 @@ class Job:
     """Makes the frames of a description and writes a cache per body into a folder.
 
     `done` is how many frames after the first there are, `unsolved` how many time steps were not solved. After it has
-    ended `error` holds what went wrong, or None.
+    ended `error` holds what went wrong, or None. The caches begin at the frame `first` of the program around it.
     """
 
-    def __init__(self, description: Description, folder: Path, files: dict[str, str], *, resume: bool = False) -> None:
+    def __init__(
+        self, description: Description, folder: Path, files: dict[str, str], *, first: int = 0, resume: bool = False
+    ) -> None:
         self.description = description
         self.folder = folder
         self.total = description.settings.frames
@@ -68,6 +70,7 @@ class Job:
         self.error: Exception | None = None
         self._files = files
         self._resume = resume
+        self._first = first
         self._cancel = threading.Event()
         self._thread = threading.Thread(target=self._guarded, name="bowknot bake", daemon=True)
 
@@ -106,6 +109,9 @@ class Job:
         pins = [(body, [next(names) for _ in body.held()]) for body in description.bodies]
         if self._resume:
             self._restore(simulator)
+        else:
+            # Not before: a start that is refused leaves the earlier bake.
+            remove(self.folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         caches = self._caches()
         state = simulator.checkpoint()
@@ -116,10 +122,12 @@ class Job:
             while self.done < self.total and not self._cancel.is_set():
                 if not self._frame(simulator, pins, settings.steps):
                     break
-                self.done += 1
+                frame = self.done + 1
                 for body in description.bodies:
-                    caches[body.name].add(self._positions(simulator, body))
+                    caches[body.name].add(self._positions(simulator, body, frame))
+                # After what may fail, such as on a full disk: frames that count are whole.
                 state = simulator.checkpoint()
+                self.done = frame
                 if self.done % _STATE_EVERY == 0:
                     self._keep(state)
         finally:
@@ -155,13 +163,13 @@ class Job:
         self.unsolved += unsolved
         return True
 
-    def _positions(self, simulator: bowknot.Simulator, body: Body) -> NDArray[np.float64]:
+    def _positions(self, simulator: bowknot.Simulator, body: Body, frame: int) -> NDArray[np.float64]:
         """The vertices of the object in its own space, in the frame that was made last."""
         positions = np.empty_like(body.start)
         if len(body.led) > 0:
-            positions[body.led] = body.led_frames[self.done]
+            positions[body.led] = body.led_frames[frame]
         positions[body.used] = simulator.positions_of(body.name)[: len(body.used)]
-        return _in_object(body, positions, self.done)
+        return _in_object(body, positions, frame)
 
     def _keep(self, state: bowknot.Checkpoint) -> None:
         """Writes the state, then what the folder says of itself: each in one go, so that a crash leaves the last ones."""
@@ -170,7 +178,7 @@ class Job:
         text = {
             "format": 1,
             "done": self.done,
-            "frame_rate": self.description.settings.frame_rate,
+            "first": self._first,
             "unsolved": self.unsolved,
             "fingerprint": self.description.fingerprint(self.done),
             "files": self._files,
