@@ -119,6 +119,30 @@ def test_a_start_that_intersects_names_its_vertices(tmp_path):
     assert not (tmp_path / "bake.json").exists()
 
 
+def test_a_start_that_is_refused_leaves_the_earlier_bake(tmp_path):
+    finished(jobs.Job(described(frames=3), tmp_path, FILES, first=7))
+    before = (tmp_path / "sheet.pc2").read_bytes()
+    description = described()
+    description.bodies[0].start[:, 2] = 0.4
+    with pytest.raises(jobs.StartIntersects):
+        finished(jobs.Job(description, tmp_path, FILES, first=1))
+    assert (tmp_path / "sheet.pc2").read_bytes() == before
+    assert jobs.about(tmp_path)["first"] == 7
+
+
+def test_an_obstacle_that_begins_to_move_in_the_new_frames_resumes_to_the_same_bits(tmp_path):
+    def still_at_first(frames):
+        description = described(frames=frames)
+        places = ball(4).frames[[0, 0, 0, 0, 0, 1, 2, 3, 4][: frames + 1]]
+        description.obstacles = [Obstacle("ball", places[:1] if frames < 5 else places, ball(4).triangles)]
+        return description
+
+    finished(jobs.Job(still_at_first(8), tmp_path / "whole", FILES))
+    finished(jobs.Job(still_at_first(4), tmp_path / "part", FILES))
+    finished(jobs.Job(still_at_first(8), tmp_path / "part", FILES, resume=True))
+    assert (tmp_path / "part" / "sheet.pc2").read_bytes() == (tmp_path / "whole" / "sheet.pc2").read_bytes()
+
+
 @pytest.mark.parametrize("thickness", [0.0, 0.01])
 def test_a_cloth_keeps_its_thickness_from_an_obstacle(tmp_path, thickness):
     body = sheet(12, height=0.33, side=17, thickness=thickness)
