@@ -14,7 +14,7 @@ class Client {
         this.worker.onerror = (event) => {
             event.preventDefault();
             const reason = event.message ? `\n${event.message}` : "";
-            this.on.failed({ message: `The part of the page that computes could not be loaded.${reason}` });
+            this.on.failed({ message: `The part of the page that computes has stopped.${reason}` });
         };
     }
 

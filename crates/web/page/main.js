@@ -27,6 +27,8 @@ const page = {
     grab: null,
     /** What was opened last, to open it again. */
     opened: null,
+    /** What is being opened. */
+    opening: null,
     playing: !asked.has("pause"),
     stiffness: 1,
     friction: null,
@@ -83,13 +85,15 @@ function rate() {
 
 const client = new Client({
     opened(layout) {
+        page.opened = page.opening;
+        mark(page.opened);
         meta.bodies = bodiesOf(layout);
         meta.delta = layout.contactDistance;
         page.frames = [];
         notice("");
         at("warnings").replaceChildren();
         warn(layout.warnings);
-        if (hasWebGL()) freshViewer();
+        if (page.viewer || hasWebGL()) freshViewer();
         else notice("This browser gives no WebGL 2, so that nothing can be drawn. The simulation runs all the same.");
         Object.assign(state, { scene: layout.name, frame: "0", judged: "0", intersections: "0", state: "ready", held: "" });
         if (page.timeStep === null) at("time-step").value = String(Math.round(1000 * layout.timeStep));
@@ -114,6 +118,11 @@ const client = new Client({
     /** What was asked for is not possible; the simulation is as it was. */
     refused({ message }) {
         state.refused = message;
+        // A scene that could not be opened leaves the one before.
+        if (state.state === "loading" && page.opened) {
+            state.state = "ready";
+            mark(page.opened);
+        }
         play(false);
         notice(message, true);
     },
@@ -134,12 +143,17 @@ function settings() {
 }
 
 function open(what) {
-    page.opened = what;
+    page.opening = what;
     state.state = "loading";
     delete state.refused;
     notice("Putting the scene together…");
-    for (const button of at("scenes").children) button.ariaChecked = String(button.dataset.scene === what.scene);
+    mark(what);
     client.tell({ ...what, ...settings() });
+}
+
+/** Marks the button of a scene. */
+function mark(what) {
+    for (const button of at("scenes").children) button.ariaChecked = String(button.dataset.scene === what.scene);
 }
 
 function play(playing) {
@@ -167,12 +181,15 @@ function controls() {
         });
         return button;
     }));
-    at("play").addEventListener("click", () => play(!page.playing));
+    at("play").addEventListener("click", () => {
+        if (!page.playing) notice("");
+        play(!page.playing);
+    });
     at("step").addEventListener("click", () => {
         play(false);
         client.tell({ do: "step" });
     });
-    at("restart").addEventListener("click", () => open(page.opened));
+    at("restart").addEventListener("click", () => open(page.opened ?? page.opening));
     const slider = (id, words, change) => {
         const input = at(id);
         const say = () => (at(`${id}-value`).textContent = words(Number(input.value)));
@@ -191,7 +208,7 @@ function controls() {
     at("friction-value").textContent = "of the scene";
     slider("time-step", (milliseconds) => `${milliseconds} ms`, (milliseconds) => {
         page.timeStep = milliseconds / 1000;
-        open(page.opened);
+        open(page.opened ?? page.opening);
     });
     at("file").addEventListener("change", (event) => openFile(event.target.files[0]));
     for (const name of ["dragover", "dragleave", "drop"]) {

@@ -141,6 +141,11 @@ def test_a_broken_mesh_is_refused_in_words(browser: Browser, address: str, name:
     browser.evaluate("at('play').click()")
     frame = int(browser.data("frame") or 0)
     browser.wait(f"Number(document.body.dataset.frame) > {frame + 2}")
+    assert browser.evaluate("at('notice').hidden")
+    # And it is what Restart opens.
+    browser.evaluate("at('restart').click()")
+    browser.wait(f"document.body.dataset.state === 'ready' && Number(document.body.dataset.frame) <= {frame}")
+    assert browser.data("scene") == "stack"
 
 
 def test_a_mesh_that_cannot_start_is_refused_in_words(browser: Browser, address: str, pictures: Path) -> None:

@@ -4,7 +4,7 @@
 //! sources and compiler give the same bytes. `crates/xtask/dist/pack.py` collects licenses and writes archives whose times
 //! and owners are fixed, and their checksums.
 
-use crate::workspace::{cargo, target_folder};
+use crate::workspace::{cargo, succeed, target_folder};
 use crate::{blender, web};
 use std::fs;
 use std::io::{Error, Result};
@@ -80,8 +80,4 @@ fn remapped(root: &Path) -> String {
         flags += &format!("\x1f--remap-path-prefix={}=cargo", home.display());
     }
     flags
-}
-
-fn succeed(command: &mut Command) -> Result<()> {
-    if command.status()?.success() { Ok(()) } else { Err(Error::other(format!("{command:?} failed"))) }
 }

@@ -2,7 +2,8 @@
 //!
 //! Each has the packages of a `requirements.txt`, and is made again whenever that changes.
 
-use std::io::{Error, Result};
+use crate::workspace::succeed;
+use std::io::Result;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -44,8 +45,4 @@ pub fn ensure(folder: &Path, requirements: &Path) -> Result<()> {
 pub fn install(folder: &Path, arguments: &[&std::ffi::OsStr]) -> Result<()> {
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
     succeed(Command::new(python(folder)).args(pip).args(arguments))
-}
-
-fn succeed(command: &mut Command) -> Result<()> {
-    if command.status()?.success() { Ok(()) } else { Err(Error::other(format!("{command:?} failed"))) }
 }

@@ -5,7 +5,7 @@
 
 use crate::bowknot;
 use crate::venv;
-use crate::workspace::{cargo, target_folder};
+use crate::workspace::{cargo, succeed, target_folder};
 use std::fs;
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -231,10 +231,6 @@ fn base64(bytes: &[u8]) -> String {
         }
     }
     text
-}
-
-fn succeed(command: &mut Command) -> Result<()> {
-    if command.status()?.success() { Ok(()) } else { Err(Error::other(format!("{command:?} failed"))) }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Where the workspace is and builds.
 
+use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -18,4 +19,9 @@ pub fn cargo(root: &Path, arguments: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments.split_whitespace()).current_dir(root);
     command
+}
+
+/// Runs a command; an error if it fails.
+pub fn succeed(command: &mut Command) -> Result<()> {
+    if command.status()?.success() { Ok(()) } else { Err(Error::other(format!("{command:?} failed"))) }
 }

@@ -26,8 +26,17 @@ shape = "half-space"
 friction = 0.5
 `;
 
-onmessage = async ({ data: plane }) => {
+/** Does something, and tells the page what is wrong. */
+async function guarded(action) {
     try {
+        await action();
+    } catch (error) {
+        postMessage({ error: error.message });
+    }
+}
+
+onmessage = ({ data: plane }) =>
+    guarded(async () => {
         await init();
         const simulator = new Simulator(Scene.fromToml(TEXT, { plane }));
         const count = plane.positions.length;
@@ -38,12 +47,9 @@ onmessage = async ({ data: plane }) => {
             simulator.step();
             const all = simulator.positions;
             const positions = new Float32Array(count);
-            order.forEach((v, k) => positions.set(all.subarray(3 * v, 3 * v + 3), 3 * k));
+            order.forEach((v, k) => v >= 0 && positions.set(all.subarray(3 * v, 3 * v + 3), 3 * k));
             postMessage({ positions, frame: simulator.stepIndex, intersections: simulator.check().count }, [positions.buffer]);
-            setTimeout(tick, Math.max(0, 1000 * simulator.timeStep - (performance.now() - began)));
+            setTimeout(() => guarded(tick), Math.max(0, 1000 * simulator.timeStep - (performance.now() - began)));
         };
         tick();
-    } catch (error) {
-        postMessage({ error: error.message });
-    }
-};
+    });
