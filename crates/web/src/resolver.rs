@@ -174,8 +174,8 @@ fn model(options: &Options, count: usize) -> Result<CollisionModel, Thrown> {
     let obstacle = flags(options, "obstacles", count)?;
     let body = options.indices("bodies")?.map(|bodies| bodies.to_vec());
     let body = body.unwrap_or_else(|| obstacle.iter().map(|&flag| u32::from(flag)).collect());
-    // Bodies are counted, so that a stray large number would cost memory; there are no more bodies than vertices, but
-    // that of obstacles is 1 by default even where there is no deformable vertex.
+    // There is an entry for each body up to the largest number, so that a stray large one would cost memory. Obstacles are
+    // body 1 by default, even where there is one vertex.
     if let Some(&large) = body.iter().find(|&&body| body as usize >= count.max(2)) {
         return Err(input(format!("bodies: number {large}, but they are numbered 0, 1, 2 and so on")));
     }

@@ -50,7 +50,7 @@ export interface ResolverOptions {
     /** x y z of each vertex at rest [m]: default lengths and stretch limits follow from it. */
     rest: Float64Array | number[];
     triangles?: Uint32Array | number[];
-    /** Edges of strands, which are no edges of triangles. */
+    /** Edges of strands. Edges of triangles are not listed. */
     edges?: Uint32Array | number[];
     /** Vertices that are particles. */
     particles?: Uint32Array | number[];
@@ -64,7 +64,8 @@ export interface ResolverOptions {
     obstacles?: Uint8Array | boolean[];
     /** Half-spaces that everything stays above: normal and offset [m] of each, four numbers. */
     planes?: Float64Array | number[];
-    /** Coefficient of friction of all bodies or of each [1]. Default 0. */
+    /** Coefficient of friction of all bodies or of each [1]. Default 0. One number also holds for half-spaces; of a list they
+     * have none. */
     friction?: number | Float64Array | number[];
     /** Guaranteed smallest gap of all bodies or of each [m]. */
     thickness?: number | Float64Array | number[];

@@ -87,7 +87,7 @@ class Gathering:
         known = {track.obj.name: track for track in obstacles}
         self.description = Description(
             settings=_settings(self._scene, self.last - self.first),
-            bodies=[track.finish(known, self._unit) for track in bodies],
+            bodies=[track.finish(known) for track in bodies],
             obstacles=[track.finish() for track in obstacles],
         )
 
@@ -158,7 +158,7 @@ class _BodyTrack:
         self._frames.append(places[self._led])
         self._matrices.append(matrix)
 
-    def finish(self, obstacles: dict[str, _ObstacleTrack], unit: float) -> Body:
+    def finish(self, obstacles: dict[str, _ObstacleTrack]) -> Body:
         """The body of all frames."""
         own = self.obj.bowknot
         role = own.role.lower()

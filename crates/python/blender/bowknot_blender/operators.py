@@ -156,12 +156,4 @@ class BOWKNOT_OT_free(bpy.types.Operator):
 
 _CLASSES = (BOWKNOT_OT_assign, BOWKNOT_OT_bake, BOWKNOT_OT_resume, BOWKNOT_OT_cancel, BOWKNOT_OT_free)
 
-
-def register() -> None:
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

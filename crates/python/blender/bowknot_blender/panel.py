@@ -80,12 +80,4 @@ class BOWKNOT_PT_bake(_Tab, bpy.types.Panel):
 
 _CLASSES = (BOWKNOT_PT_object, BOWKNOT_PT_bake)
 
-
-def register() -> None:
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

@@ -80,11 +80,12 @@ class BowknotObject(bpy.types.PropertyGroup):
     )
     cell: FloatProperty(
         name="Cell",
-        description="Edge length of the tetrahedra inside, in meters. 0, or less than that: as on the surface",
+        description="Edge length of the tetrahedra inside, in meters. It is at least that of the surface, which 0 stands for",
         default=0.0,
         min=0.0,
     )
-    #: The modifiers that a result of shape keys has switched off, one per line.
+    #: The modifiers that a result of shape keys has switched off, one per line, each after whether viewport and render
+    #: showed it.
     muted: StringProperty(options={"HIDDEN"})
 
 

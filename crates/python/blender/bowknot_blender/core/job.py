@@ -87,9 +87,9 @@ class Job:
         """Whether the thread is at work."""
         return self._thread.is_alive()
 
-    def join(self, timeout: float | None = None) -> None:
+    def join(self) -> None:
         """Waits for the thread."""
-        self._thread.join(timeout)
+        self._thread.join()
 
     def _guarded(self) -> None:
         try:
