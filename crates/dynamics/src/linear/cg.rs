@@ -32,7 +32,29 @@ impl<T: Real> Krylov<T> {
         self.preconditioner.fill(system, levels);
     }
 
-    /// Prepares for solves.
+    /// Prepares for solves with `levels`, which `build` builds. That is largely one thread's work, so the operator is prepared
+    /// beside it, and what `beside` does.
+    pub fn fill(
+        &mut self,
+        system: &System<'_>,
+        levels: &mut Levels,
+        build: impl FnOnce(&mut Levels) + Send,
+        beside: impl FnOnce() + Send,
+    ) {
+        let Self { operator, preconditioner, .. } = self;
+        rayon::join(
+            || {
+                build(levels);
+                preconditioner.fill(system, levels);
+            },
+            || {
+                operator.fill(system);
+                beside();
+            },
+        );
+    }
+
+    /// Prepares for products with the matrix.
     pub fn fill_operator(&mut self, system: &System<'_>) {
         self.operator.fill(system);
     }

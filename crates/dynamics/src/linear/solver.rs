@@ -67,24 +67,16 @@ impl LinearSolver {
         self.precise = true;
     }
 
-    /// Builds the preconditioner for `system`, linearized at positions `x`.
-    fn prepare(&mut self, system: &System<'_>, x: &[Vector], iterations: usize) {
-        self.levels.build(system, x, iterations);
-        if self.precise {
-            self.double.fill_preconditioner(system, &self.levels);
-        } else {
-            self.single.fill_preconditioner(system, &self.levels);
-        }
-    }
-
     /// Sets `z` to the preconditioner of `system`, linearized at positions `x`, times `r`.
     pub fn precondition(&mut self, system: &System<'_>, x: &[Vector], r: &[Vector], z: &mut [Vector]) {
-        self.prepare(system, x, self.expected[1]);
+        self.levels.build(system, x, self.expected[1]);
         let (factor, whole) = (unit_factor(r), Parts::whole(r.len()));
         if self.precise {
+            self.double.fill_preconditioner(system, &self.levels);
             self.double.begin(&mut self.levels, &whole, r, factor);
             self.double.copy_preconditioned(1.0 / factor, z);
         } else {
+            self.single.fill_preconditioner(system, &self.levels);
             self.single.begin(&mut self.levels, &whole, r, factor);
             self.single.copy_preconditioned(1.0 / factor, z);
         }
@@ -116,11 +108,17 @@ impl LinearSolver {
         x: &mut [Vector],
     ) -> CgInfo {
         let kind = usize::from(limits.own_tolerance == 0.0);
-        self.prepare(system, positions, self.expected[kind]);
-        x.fill(Vector::zeros());
-        self.residual.clear();
-        self.residual.extend_from_slice(b);
         let Self { levels, precise, single, double, guesses: start, residual, scales, expected, .. } = self;
+        x.fill(Vector::zeros());
+        residual.clear();
+        residual.extend_from_slice(b);
+        let build = |levels: &mut Levels| levels.build(system, positions, expected[kind]);
+        let begin = || start.start(system, parts, guesses, x, residual);
+        if *precise {
+            double.fill(system, levels, build, begin);
+        } else {
+            single.fill(system, levels, build, begin);
+        }
 
         let mut factor = unit_factor(b);
         let norms = if *precise {
@@ -133,6 +131,7 @@ impl LinearSolver {
         {
             scales.clear();
             scales.resize(parts.count(), 0.0);
+            x.fill(Vector::zeros());
             return CgInfo { iterations: 0, residual: 0.0, converged: norms.iter().all(|norm| *norm == 0.0) };
         }
         scales.clone_from(&norms);
@@ -148,13 +147,10 @@ impl LinearSolver {
         };
         let mut left = limits.max_iterations;
 
-        start.start(system, parts, guesses, x, residual);
         factor = unit_factor(residual);
         if *precise {
-            double.fill_operator(system);
             double.load(residual, factor);
         } else {
-            single.fill_operator(system);
             single.load(residual, factor);
             loop {
                 let before = norms;
