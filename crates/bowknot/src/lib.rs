@@ -17,6 +17,7 @@
 pub mod gpu;
 #[cfg(feature = "files")]
 pub mod judging;
+pub mod messages;
 #[cfg(feature = "files")]
 pub mod recording;
 #[cfg(feature = "files")]

@@ -26,6 +26,16 @@ impl HalfSpace {
         (length.is_finite() && length > 0.0 && offset.is_finite()).then_some(Self { normal, offset })
     }
 
+    /// The half-space with normal . x < offset, for a `normal` of any length but zero, which `offset` is relative to; a
+    /// normal that is a unit up to rounding is kept bit by bit. `None` if the normal has no direction or a number
+    /// is not finite.
+    pub fn of_plane(normal: Vector, offset: f64) -> Option<Self> {
+        let length = normal.norm();
+        let scale = if (length - 1.0).abs() < 1e-12 { 1.0 } else { length };
+        (length.is_finite() && length > 0.0 && offset.is_finite())
+            .then(|| Self { normal: normal / scale, offset: offset / scale })
+    }
+
     /// The half-space while it is not there: empty, of the same normal.
     #[must_use]
     pub fn absent(self) -> Self {
@@ -57,6 +67,11 @@ mod tests {
         assert_eq!(ground.signed_distance(&Point::new(7.0, 8.0, 0.0)), -0.5);
         let wall = HalfSpace::new(Point::new(1.0, 1.0, 1.0), Vector::new(1.0, 2.0, 2.0)).unwrap();
         assert!((wall.signed_distance(&Point::new(2.0, 3.0, 3.0)) - 3.0).abs() < 1e-15);
+        let scaled = HalfSpace::of_plane(3.0 * wall.normal, 3.0 * wall.offset).unwrap();
+        assert!((scaled.normal - wall.normal).norm() < 1e-15 && (scaled.offset - wall.offset).abs() < 1e-15);
+        assert_eq!(HalfSpace::of_plane(wall.normal, wall.offset), Some(wall));
+        assert_eq!(HalfSpace::of_plane(Vector::zeros(), 1.0), None);
+        assert_eq!(HalfSpace::of_plane(Vector::z(), f64::INFINITY), None);
         assert!(wall.absent().is_empty() && !wall.is_empty());
         assert_eq!(wall.absent().signed_distance(&Point::new(0.0, 0.0, -1e60)), f64::INFINITY);
     }

@@ -48,20 +48,12 @@ pub fn column<T: Element + Copy>(array: &PyReadonlyArray1<'_, T>) -> Vec<T> {
 
 /// Half-spaces from rows of a unit normal and an offset [m].
 pub fn half_spaces(array: &Rows<'_>) -> PyResult<Vec<HalfSpace>> {
-    let mut found = Vec::new();
-    for (index, [x, y, z, offset]) in table::<4>(array)?.into_iter().enumerate() {
-        let normal = Vector::new(x, y, z);
-        let length = normal.norm();
-        if !(length.is_finite() && length > 0.0 && offset.is_finite()) {
-            let message =
-                format!("planes: row {index} needs a normal (finite, not zero) and a finite offset");
-            return Err(error::input(message));
-        }
-        // A normal that is a unit to rounding is kept bit by bit.
-        let scale = if (length - 1.0).abs() < 1e-12 { 1.0 } else { length };
-        found.push(HalfSpace { normal: normal / scale, offset: offset / scale });
-    }
-    Ok(found)
+    let plane = |(index, [x, y, z, offset]): (usize, [f64; 4])| {
+        HalfSpace::of_plane(Vector::new(x, y, z), offset).ok_or_else(|| {
+            error::input(format!("planes: row {index} needs a normal (finite, not zero) and a finite offset"))
+        })
+    };
+    table::<4>(array)?.into_iter().enumerate().map(plane).collect()
 }
 
 /// An array of shape (n, 3).

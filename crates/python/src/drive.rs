@@ -5,10 +5,8 @@ use crate::error;
 use bowknot::Simulator;
 use bowknot::geometry::Vector;
 use bowknot::geometry::nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
-use bowknot::scene::{BodyKind, Material};
+use bowknot::scene::Material;
 use pyo3::PyResult;
-use serde::Deserialize;
-use toml::{Table, Value};
 
 /// A rigid transform from the rows of its 4 x 4 matrix, whose rotation the Python part has checked.
 pub fn isometry(rows: &Rows<'_>) -> PyResult<Isometry3<f64>> {
@@ -37,25 +35,9 @@ pub fn set_material(simulator: &mut Simulator, body: &str, text: &str) -> PyResu
     let spec = simulator.scene().bodies.iter().find(|spec| spec.name == body);
     let kind = spec.map(|spec| spec.kind);
     // An unknown body is refused by the simulator, whatever the material.
-    let material = kind.map_or_else(|| Ok(Material::default()), |kind| material(kind, text))?;
+    let material = kind.map_or_else(|| Ok(Material::default()), |kind| Material::from_toml(kind, text));
+    let material = material.map_err(|error| error::input(error.to_string()))?;
     simulator.set_material(body, material).map_err(error::simulation)
-}
-
-/// A material by a name or by its numbers.
-fn material(kind: BodyKind, text: &str) -> PyResult<Material> {
-    // Read as the material of a body that has nothing else, so that messages are those of a scene.
-    let read = |text: &str| -> Result<Material, String> {
-        let table: Table = text.parse().map_err(|error: toml::de::Error| error.message().to_owned())?;
-        let mut body = table;
-        // No file is read before the scene is simulated.
-        body.insert("mesh".to_owned(), Value::from("mesh.obj"));
-        body.insert("kind".to_owned(), Value::from(kind.name()));
-        let root = Table::from_iter([("body".to_owned(), Value::Array(vec![Value::Table(body)]))]);
-        let scene =
-            bowknot::Scene::deserialize(Value::Table(root)).map_err(|error| error.message().to_owned())?;
-        scene.bodies.first().map(|body| body.material).ok_or_else(|| "no material".to_owned())
-    };
-    read(&format!("material = {text}")).map_err(error::input)
 }
 
 /// Radius with which strands and grains touch in a picture when they are in contact [m].

@@ -33,7 +33,7 @@ use pyo3::prelude::*;
 /// The module `bowknot._native`.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    messages::listen();
+    bowknot::messages::listen();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<resolver::Resolver>()?;
     module.add_class::<scene::Scene>()?;

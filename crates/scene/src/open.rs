@@ -3,12 +3,37 @@
 use crate::builtin::{self, BUILTIN};
 use crate::description::Scene;
 use crate::error::{self, SceneError, SceneProblem};
+use crate::kind::BodyKind;
+use crate::material::Material;
+use crate::origin::Origin;
 use crate::source::Source;
 use crate::{read, short, validate, write};
 use bowknot_io::IoError;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::path::Path;
-use toml::Table;
+use toml::{Table, Value};
+
+impl Material {
+    /// From the value of a body's key `material` as a scene file has it: `"\"silk\""`, `"{ young_modulus = 1e5 }"`.
+    ///
+    /// # Errors
+    /// Text that is not TOML, unknown names and keys, wrong types, values out of range.
+    pub fn from_toml(kind: BodyKind, text: &str) -> Result<Self, SceneError> {
+        let refused = |message: &str| {
+            let (key, message) = ("material".to_owned(), message.to_owned());
+            SceneError::Invalid(vec![SceneProblem { origin: Origin::Code, key, message }])
+        };
+        // Of a body that has nothing else, so that messages are those of a scene. No mesh is read.
+        let mut body: Table = format!("material = {text}")
+            .parse()
+            .map_err(|error: toml::de::Error| refused(error.message()))?;
+        body.insert("mesh".to_owned(), Value::from("mesh.obj"));
+        body.insert("kind".to_owned(), Value::from(kind.name()));
+        let scene = Table::from_iter([("body".to_owned(), Value::Array(vec![Value::Table(body)]))]);
+        let scene = read::scene(&Source::from_table(scene), Path::new(""), "scene")?;
+        scene.bodies.first().map(|body| body.material).ok_or_else(|| refused("is missing"))
+    }
+}
 
 impl Scene {
     /// Reads a scene file and applies `sets`, each `KEY.PATH=VALUE`, before anything is interpreted.

@@ -45,15 +45,10 @@ pub fn elements<const N: usize>(name: &str, array: &Uint32Array) -> Result<Vec<[
 /// Half-spaces: a normal and an offset along it [m] for each.
 pub fn half_spaces(name: &str, array: &Float64Array) -> Result<Vec<HalfSpace>, Thrown> {
     let plane = |(index, [x, y, z, offset]): (usize, [f64; 4])| {
-        let normal = Vector::new(x, y, z);
-        let length = normal.norm();
-        if !(length.is_finite() && length > 0.0 && offset.is_finite()) {
+        HalfSpace::of_plane(Vector::new(x, y, z), offset).ok_or_else(|| {
             let message = "needs a normal that is not zero and an offset, all finite";
-            return Err(input(format!("{name}: plane {index} {message}")));
-        }
-        // A normal that is a unit to rounding is kept bit by bit, as that of the native library is.
-        let scale = if (length - 1.0).abs() < 1e-12 { 1.0 } else { length };
-        Ok(HalfSpace { normal: normal / scale, offset: offset / scale })
+            input(format!("{name}: plane {index} {message}"))
+        })
     };
     rows(name, array)?.into_iter().enumerate().map(plane).collect()
 }

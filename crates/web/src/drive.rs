@@ -5,10 +5,8 @@ use crate::error::{self, Thrown, input};
 use crate::simulator::Simulator;
 use bowknot::dynamics::{ClothMaterial, SolidMaterial, StrandMaterial};
 use bowknot::geometry::nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
-use bowknot::scene::{BodyKind, Material};
+use bowknot::scene::Material;
 use js_sys::{Float64Array, Uint32Array};
-use serde::Deserialize;
-use toml::{Table, Value};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// Largest deviation of a rotation's columns from unit vectors at right angles [1].
@@ -124,7 +122,9 @@ impl Simulator {
         let spec = self.inner.scene().bodies.iter().find(|spec| spec.name == body);
         let kind = spec.map(|spec| spec.kind);
         // An unknown body is refused by the simulator, whatever the material.
-        let material = kind.map_or_else(|| Ok(Material::default()), |kind| read_material(kind, material))?;
+        let material =
+            kind.map_or_else(|| Ok(Material::default()), |kind| Material::from_toml(kind, material));
+        let material = material.map_err(|error| input(error.to_string()))?;
         self.inner.set_material(body, material).map_err(error::simulation)
     }
 
@@ -169,18 +169,6 @@ fn scaled(material: Material, ratio: f64) -> Material {
         }),
         other => other,
     }
-}
-
-/// A material by a name or by its numbers.
-fn read_material(kind: BodyKind, text: &str) -> Result<Material, Thrown> {
-    // Read as the material of a body that has nothing else, so that messages are those of a scene.
-    let mut body: Table =
-        format!("material = {text}").parse().map_err(|error: toml::de::Error| input(error.message()))?;
-    body.insert("mesh".to_owned(), Value::from("mesh.obj"));
-    body.insert("kind".to_owned(), Value::from(kind.name()));
-    let root = Table::from_iter([("body".to_owned(), Value::Array(vec![Value::Table(body)]))]);
-    let scene = bowknot::Scene::deserialize(Value::Table(root)).map_err(|error| input(error.message()))?;
-    scene.bodies.first().map(|body| body.material).ok_or_else(|| input("no material"))
 }
 
 /// A rigid transform of a matrix in the order of columns.

@@ -38,7 +38,7 @@ const TYPES: &str = include_str!("types.ts");
 #[wasm_bindgen(start)]
 fn start() {
     error::throw_panics();
-    messages::listen();
+    bowknot::messages::listen();
 }
 
 /// The version of this package.

@@ -41,7 +41,13 @@ impl Options {
     /// A list or array of numbers.
     pub fn floats(&self, key: &str) -> Result<Option<Float64Array>, Thrown> {
         let Some(value) = self.get(key) else { return Ok(None) };
-        if Array::is_array(&value) || value.is_instance_of::<js_sys::Float32Array>() {
+        if let Some(list) = value.dyn_ref::<Array>() {
+            let numbers: Option<Vec<f64>> = list.iter().map(|entry| entry.as_f64()).collect();
+            let numbers =
+                numbers.ok_or_else(|| self.expected(key, "an Array of numbers or a Float64Array"))?;
+            return Ok(Some(Float64Array::from(numbers.as_slice())));
+        }
+        if value.is_instance_of::<js_sys::Float32Array>() {
             return Ok(Some(Float64Array::new(&value)));
         }
         value.dyn_into().map(Some).map_err(|_| self.expected(key, "a Float64Array"))
@@ -50,7 +56,16 @@ impl Options {
     /// A list or array of indices.
     pub fn indices(&self, key: &str) -> Result<Option<Uint32Array>, Thrown> {
         let Some(value) = self.get(key) else { return Ok(None) };
-        if Array::is_array(&value) || value.is_instance_of::<js_sys::Uint16Array>() {
+        if let Some(list) = value.dyn_ref::<Array>() {
+            let index = |entry: f64| {
+                (entry >= 0.0 && entry.fract() == 0.0 && entry < f64::from(u32::MAX)).then_some(entry as u32)
+            };
+            let indices: Option<Vec<u32>> = list.iter().map(|entry| entry.as_f64().and_then(index)).collect();
+            let indices = indices
+                .ok_or_else(|| self.expected(key, "an Array of whole numbers from 0 or a Uint32Array"))?;
+            return Ok(Some(Uint32Array::from(indices.as_slice())));
+        }
+        if value.is_instance_of::<js_sys::Uint16Array>() {
             return Ok(Some(Uint32Array::new(&value)));
         }
         value.dyn_into().map(Some).map_err(|_| self.expected(key, "a Uint32Array"))

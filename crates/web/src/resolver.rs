@@ -58,7 +58,9 @@ impl Resolver {
             return Err(input("options: rest, the positions at rest, is missing"));
         };
         let rest = arrays::points("rest", &rest)?;
-        let masses = options.per("masses", rest.len())?.into_iter().map(|mass| mass.unwrap_or(1.0));
+        // A mass that is given as NaN is refused as such.
+        let default = if options.get("masses").is_none() { 1.0 } else { f64::NAN };
+        let masses = options.per("masses", rest.len())?.into_iter().map(|mass| mass.unwrap_or(default));
         let masses: Vec<f64> = masses.collect();
         let model = model(&options, rest.len())?;
         let (bodies, planes) = (model.bodies().len(), model.half_spaces().len());

@@ -91,6 +91,9 @@ def test_errors_are_named_and_in_words(browser: Browser, address: str) -> None:
     cases = {
         "new module.Resolver({ rest: [0, 0, 0], faces: [] })": ("InputError", "unknown key faces"),
         "new module.Resolver({ rest: [0, 0] })": ("InputError", "not a multiple of 3"),
+        "new module.Resolver({ rest: [0, 0, 'x'] })": ("InputError", "rest must be an Array of numbers"),
+        "new module.Resolver({ rest: [0, 0, 0], particles: [NaN] })": ("InputError", "particles must be an Array of"),
+        "new module.Resolver({ rest: [0, 0, 0], particles: [0], masses: NaN })": ("InputError", "mass"),
         "new module.Resolver({ rest: new Float64Array(9), triangles: [0, 1, 7] })": ("InputError", "7"),
         'module.Scene.builtin("drap")': ("InputError", "drape"),
         'module.Scene.fromToml("[[body]]\\nmesh = \\"a.obj\\"")': ("InputError", "no mesh a.obj is given"),
