@@ -7,7 +7,7 @@ use crate::chart;
 use crate::figure::{Figure, Part, Report};
 use crate::files::write;
 use crate::machine::WITH_CHANGES;
-use crate::pages::{BENCHMARKS, STABILITY};
+use crate::pages::{BENCHMARKS, FILMS, GALLERY, STABILITY};
 use crate::{git, page};
 use anyhow::{Context, Result, bail, ensure};
 use std::fs;
@@ -33,8 +33,9 @@ impl Docs {
     /// # Errors
     /// If the tree is not clean, or is no git tree.
     pub fn ensure_clean(&self) -> Result<()> {
-        let exclude = [BENCHMARKS, STABILITY, FOLDER].map(|path| format!(":(exclude){path}"));
-        let arguments = ["status", "--porcelain", "--", ".", &exclude[0], &exclude[1], &exclude[2]];
+        let exclude = [BENCHMARKS, FILMS, FOLDER, GALLERY, STABILITY].map(|path| format!(":(exclude){path}"));
+        let mut arguments = vec!["status", "--porcelain", "--", "."];
+        arguments.extend(exclude.iter().map(String::as_str));
         let Some(changes) = git::output(&self.repository, &arguments) else {
             bail!("{} is no git tree: {BENCHMARKS} has to name the commit", self.repository.display());
         };

@@ -35,6 +35,7 @@ const QUICK: &[(&str, u32)] = &[
     ("goals", 13),
     ("gpu", 60),
     ("stability", 60),
+    ("gallery", 30),
     ("record", 150),
 ];
 

@@ -7,6 +7,7 @@
 //! | `figure` | the trait that they implement, and what they report |
 //! | `run`, `durations` | measuring a figure; how long that takes |
 //! | `docs`, `page`, `pages` | writing its results into docs/benchmarks and docs/benchmarks.md |
+//! | `age` | which results on the pages are stale |
 //! | `bench`, `store`, `machine` | size, folder and time of a run; kept measurements; machine, commit |
 //! | `record`, `case`, `targets` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
@@ -22,6 +23,7 @@
 // A command prints its results.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod age;
 mod bench;
 mod case;
 mod chart;
@@ -60,7 +62,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "bowknot-bench")]
 struct Arguments {
-    /// A figure, `all`, `record` (collision problems as NPZ files), or `list`.
+    /// A figure, `all`, `record` (collision problems as NPZ files), `list`, or `age` (marks stale results on the pages).
     name: String,
     /// Measures smaller scenes and writes to DIR alone.
     #[arg(long)]
@@ -145,6 +147,9 @@ fn run(arguments: &Arguments) -> Result<()> {
     };
     // The repository that the command was built from.
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    if arguments.name == "age" {
+        return age::mark_pages(&repository);
+    }
     let docs = Docs::new(&repository);
     if size == Size::Full && arguments.name != "record" && arguments.cases.is_none() {
         // Before hours of measurements, not after them.
@@ -166,7 +171,7 @@ fn run(arguments: &Arguments) -> Result<()> {
         }
         name => match figures::ALL.iter().find(|figure| figure.name() == name) {
             Some(figure) => run::measure(&bench, &docs, *figure, &names),
-            None => bail!("no figure {name:?}; there are all, record, list, {}", names.join(", ")),
+            None => bail!("no figure {name:?}; there are all, record, list, age, {}", names.join(", ")),
         },
     }
 }

@@ -4,3 +4,8 @@
 pub const BENCHMARKS: &str = "docs/benchmarks.md";
 /// The cases of [`crate::stability`].
 pub const STABILITY: &str = "docs/stability.md";
+/// The runs of [`crate::figures::gallery`], and the folder of their films.
+pub const GALLERY: &str = "docs/gallery.md";
+pub const FILMS: &str = "docs/gallery";
+/// What `bowknot-bench gpu` measured, with text of its own.
+pub const GPU_RESULTS: &str = "docs/gpu/results.md";

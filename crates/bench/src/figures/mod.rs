@@ -9,6 +9,7 @@ mod defaults;
 mod early_contact;
 mod edge_limits;
 mod funnel;
+mod gallery;
 mod goals;
 mod gpu;
 mod impact_zones;
@@ -61,4 +62,5 @@ pub const ALL: &[&dyn Figure] = &[
     &goals::Goals,
     &gpu::Gpu,
     &stability::Stability,
+    &gallery::Gallery,
 ];
