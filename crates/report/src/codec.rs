@@ -6,6 +6,8 @@
 //! neighbors miss alike. Low and high bytes lie apart, so that the high ones, mostly 0, deflate to almost
 //! nothing. `assets/app/data.js` is the inverse.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use bowknot_geometry::{Point, Vector};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -124,20 +126,5 @@ pub(super) fn pack(bytes: &[u8]) -> String {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(7));
     // Writing to memory does not fail.
     let deflated = encoder.write_all(bytes).and_then(|()| encoder.finish()).unwrap_or_default();
-    base64(&deflated)
-}
-
-/// Base64 of RFC 4648, section 4.
-pub(super) fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |k: usize| u32::from(chunk.get(k).copied().unwrap_or(0));
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for digit in 0..4 {
-            let place = (bits >> (18 - 6 * digit)) & 63;
-            text.push(if digit <= chunk.len() { char::from(DIGITS[place as usize]) } else { '=' });
-        }
-    }
-    text
+    STANDARD.encode(deflated)
 }
