@@ -26,6 +26,10 @@ class Handler(http.server.SimpleHTTPRequestHandler):
         pass
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "long: left out by `cargo xtask web --test --quick`, as CI runs it")
+
+
 @pytest.fixture(scope="session")
 def address() -> Iterator[str]:
     """Where the folders `web` and `npm` of the target folder are served."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -18,6 +19,9 @@ COMMAND = os.environ.get("BOWKNOT_COMMAND", "bowknot")
 
 #: Scenes, their scales, and time steps until the comparison.
 CASES = [("drape", 0.4, 30), ("tube", 0.3, 20), ("trampoline", 0.4, 20), ("hair", 0.3, 15), ("sand", 0.3, 20)]
+
+#: What the packages hold beside their code.
+FILES = ["README.md", "LICENSE-MIT", "LICENSE-APACHE", "LICENSES-OF-DEPENDENCIES.txt"]
 
 MODULE = """
 const toBase64 = (array) => {
@@ -40,7 +44,7 @@ def run(browser: Browser, address: str, code: str, package: str = "web/bowknot.j
 
 
 @pytest.mark.parametrize(("scene", "scale", "frames"), CASES)
-@pytest.mark.parametrize("preset", ["quick", "fast"])
+@pytest.mark.parametrize("preset", ["quick", pytest.param("fast", marks=pytest.mark.long)])
 def test_positions_are_those_of_the_command(
     browser: Browser, address: str, tmp_path: Path, scene: str, scale: float, frames: int, preset: str
 ) -> None:
@@ -146,13 +150,33 @@ def test_the_package_with_the_module_inside_runs(browser: Browser, address: str)
     assert run(browser, address, code, "npm/bowknot/bowknot.js") == 0
 
 
+def test_the_package_with_the_module_inside_runs_in_node(tmp_path: Path) -> None:
+    if shutil.which("node") is None:
+        assert os.environ.get("CI") != "true", "CI needs Node to run the package in: apt-get install nodejs"
+        pytest.skip("no Node on this machine (Debian: apt-get install nodejs)")
+    # A project beside which the package is installed, as `npm install FOLDER` links it.
+    (tmp_path / "node_modules").mkdir()
+    (tmp_path / "node_modules/bowknot-compat").symlink_to((TARGET / "npm/bowknot-compat").resolve())
+    script = tmp_path / "main.mjs"
+    script.write_text(
+        """import init, { Scene, Simulator } from "bowknot-compat";
+        await init();
+        const simulator = new Simulator(Scene.builtin("drape", 0.2));
+        for (let frame = 0; frame < 5; frame++) simulator.step();
+        console.log(simulator.stepIndex, simulator.positions.every(Number.isFinite), simulator.check().count);"""
+    )
+    done = subprocess.run(["node", script], cwd=tmp_path, capture_output=True, text=True)
+    assert done.stdout.split() == ["5", "true", "0"], done.stderr
+
+
 def test_packages_have_what_npm_asks_for() -> None:
     for name in ["bowknot", "bowknot-compat"]:
         folder = TARGET / "npm" / name
         manifest = json.loads((folder / "package.json").read_text())
         assert manifest["name"] == name and manifest["version"] != "0.0.0"
-        for file in [manifest["main"], manifest["types"], "README.md", "LICENSE-MIT", "LICENSE-APACHE"]:
+        for file in [manifest["main"], manifest["types"], *FILES]:
             assert (folder / file).is_file(), f"{name}: {file}"
+        assert "rayon v" in (folder / FILES[-1]).read_text()
         types = (folder / "bowknot.d.ts").read_text()
         for word in ["class Simulator", "class Resolver", "interface ResolverOptions", "step(): StepStatistics"]:
             assert word in types, f"{name}: {word}"

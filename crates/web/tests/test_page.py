@@ -11,7 +11,7 @@ from browser import Browser
 #: Frames of each scene.
 FRAMES = 50
 
-SCENES = ["drape", "stack", "tube", "trampoline", "hair", "sand"]
+SCENES = ["drape", "hair", *(pytest.param(scene, marks=pytest.mark.long) for scene in ["stack", "tube", "trampoline", "sand"])]
 
 BOX = """v 0 0 0
 v 2 0 0

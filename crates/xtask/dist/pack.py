@@ -6,16 +6,19 @@ Archives have fixed times, owners and orders: the same files give the same bytes
 from __future__ import annotations
 
 import argparse
+import contextlib
 import gzip
 import hashlib
 import io
-import json
+import os
 import platform
 import shutil
 import subprocess
 import sys
 import tarfile
 import tempfile
+import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -23,8 +26,8 @@ ROOT = Path(__file__).resolve().parents[3]
 #: Time of all files in archives [s].
 _TIME = 1767225600
 
-#: Names of files with licenses begin so.
-_LICENSES = ("license", "licence", "copying", "notice", "unlicense")
+#: The text of the licenses of what is linked, as `crates/xtask/src/licenses.rs` names it.
+_DEPENDENCIES = "LICENSES-OF-DEPENDENCIES.txt"
 
 
 def system() -> str:
@@ -35,10 +38,10 @@ def system() -> str:
     return f"{names.get(platform.system(), platform.system().lower())}-{processors.get(machine, machine)}"
 
 
-def archive(path: Path, files: dict[str, Path | bytes]) -> None:
+def archive(path: Path, files: dict[str, Path | bytes], level: int = 9) -> None:
     """Writes a .tar.gz of these files, which lie in a folder of the archive's name."""
     folder = path.name.removesuffix(".tar.gz").removesuffix(".tgz")
-    with path.open("wb") as raw, gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0) as zipped:
+    with path.open("wb") as raw, gzip.GzipFile("", "wb", level, raw, mtime=0) as zipped:
         with tarfile.open(fileobj=zipped, mode="w", format=tarfile.PAX_FORMAT) as tar:
             for name in sorted(files):
                 content = files[name]
@@ -56,87 +59,44 @@ def folder_files(folder: Path, prefix: str = "") -> dict[str, Path | bytes]:
     return {prefix + path.relative_to(folder).as_posix(): path for path in files}
 
 
-def licenses(package: str) -> bytes:
-    """The licenses of all crates that are linked into a package, in one text."""
-    command = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", host()]
-    metadata = json.loads(subprocess.run(command, cwd=ROOT, check=True, capture_output=True).stdout)
-    packages = {entry["id"]: entry for entry in metadata["packages"]}
-    nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}
-    found, open_ = set(), [next(id_ for id_, entry in packages.items() if entry["name"] == package)]
-    while open_:
-        id_ = open_.pop()
-        if id_ not in found:
-            found.add(id_)
-            for dependency in nodes[id_]["deps"]:
-                # Those of builds and tests are not linked.
-                if any(kind["kind"] is None for kind in dependency["dep_kinds"]):
-                    open_.append(dependency["pkg"])
-    texts, without = [], []
-    for entry in sorted((packages[id_] for id_ in found), key=lambda entry: (entry["name"], entry["version"])):
-        if entry["source"] is None:
-            continue
-        name = f"{entry['name']} {entry['version']}: {entry['license'] or 'see below'}"
-        files = sorted(Path(entry["manifest_path"]).parent.glob("*"))
-        files = [path for path in files if path.is_file() and path.name.lower().startswith(_LICENSES)]
-        if not files:
-            without.append(name)
-        for path in files:
-            texts.append(f"{'=' * 80}\n{name}\n{path.name}\n\n{path.read_text(encoding='utf-8', errors='replace')}\n")
-    head = [
-        "Licenses of the crates that are linked into this program.\n",
-        "These carry no text of their own; that of their license stands at others:\n",
-        *(f"  {name}\n" for name in without),
-        "\n",
-    ]
-    return "".join(head + texts).encode()
-
-
-def host() -> str:
-    """The target that the compiler builds for."""
-    version = subprocess.run(["rustc", "-vV"], check=True, capture_output=True, text=True).stdout
-    return next(line.removeprefix("host: ") for line in version.splitlines() if line.startswith("host: "))
-
-
-def with_licenses(package: str, readme: str, files: dict[str, Path | bytes]) -> dict[str, Path | bytes]:
-    """These files with what to read first, and the licenses of a package and of what is linked into it."""
+def with_licenses(parts: Path, readme: str, files: dict[str, Path | bytes]) -> dict[str, Path | bytes]:
+    """These files with what to read first, our licenses and those of what is linked."""
     ours = {name: ROOT / name for name in ("LICENSE-MIT", "LICENSE-APACHE")}
-    return {**files, **ours, "README.md": ROOT / readme, "LICENSES-OF-DEPENDENCIES.txt": licenses(package)}
+    return {**files, **ours, "README.md": ROOT / readme, _DEPENDENCIES: parts / _DEPENDENCIES}
 
 
-def command_archive(target: Path, out: Path, version: str) -> Path:
+def command_archive(programs: Path, parts: Path, path: Path, level: int) -> None:
     """The command with completions, manual pages and licenses."""
     name = "bowknot.exe" if platform.system() == "Windows" else "bowknot"
     files: dict[str, Path | bytes] = {
-        f"bin/{name}": target / "shipped" / name,
+        f"bin/{name}": programs / name,
         "CHANGELOG.md": ROOT / "CHANGELOG.md",
-        **folder_files(target / "xtask/dist/completions", "completions/"),
-        **folder_files(target / "xtask/dist/man", "share/man/man1/"),
+        **folder_files(parts / "completions", "completions/"),
+        **folder_files(parts / "man", "share/man/man1/"),
     }
-    path = out / f"bowknot-{version}-{system()}.tar.gz"
-    archive(path, with_licenses("bowknot-cli", "crates/cli/README.md", files))
-    return path
+    archive(path, with_licenses(parts, "crates/cli/README.md", files), level)
 
 
-def library_archive(target: Path, out: Path, version: str) -> None:
+def library_archive(libraries: Path, parts: Path, path: Path, level: int) -> None:
     """The libraries for C with their header and example."""
     names = ("libbowknot_c.a", "libbowknot_c.so", "libbowknot_c.dylib", "bowknot_c.dll", "bowknot_c.dll.lib", "bowknot_c.lib")
     files: dict[str, Path | bytes] = {
-        f"lib/{name}": target / "shipped" / name for name in names if (target / "shipped" / name).is_file()
+        f"lib/{name}": libraries / name for name in names if (libraries / name).is_file()
     }
     files |= {
         "include/bowknot.h": ROOT / "crates/capi/include/bowknot.h",
         "examples/drape.c": ROOT / "crates/capi/examples/drape.c",
     }
-    files = with_licenses("bowknot-capi", "crates/capi/README.md", files)
-    archive(out / f"bowknot-c-{version}-{system()}.tar.gz", files)
+    archive(path, with_licenses(parts, "crates/capi/README.md", files), level)
 
 
-def others(target: Path, out: Path, version: str, extension: Path) -> None:
-    """The extension for Blender, the wheel, the page and the npm packages."""
-    # Beside the archive of the command, the name says what the zip is.
-    shutil.copy2(extension, out / extension.name.replace("bowknot-", "bowknot-blender-", 1))
+def others(target: Path, out: Path, version: str) -> None:
+    """The wheel, the page and the npm packages, those that are there."""
     for wheel in (target / "wheels").glob(f"bowknot-{version}-*.whl"):
         shutil.copy2(wheel, out)
+    if not (target / "web").is_dir():
+        print("no page and no npm packages: cargo xtask web has not built them", file=sys.stderr)
+        return
     archive(out / f"bowknot-web-{version}.tar.gz", folder_files(target / "web"))
     for name in ("bowknot", "bowknot-compat"):
         # As `npm pack` does: all is in a folder `package`.
@@ -146,20 +106,57 @@ def others(target: Path, out: Path, version: str, extension: Path) -> None:
             shutil.copyfile(packed, out / f"npm-{name}-{version}.tgz")
 
 
-def try_command(path: Path) -> None:
-    """Unpacks the command as a user does, and runs it."""
+@contextlib.contextmanager
+def unpacked(path: Path) -> Iterator[Path]:
+    """The folder in an archive, unpacked as a user does."""
     with tempfile.TemporaryDirectory() as place:
         with tarfile.open(path) as tar:
             tar.extractall(place, filter="data")
-        folder = Path(place) / path.name.removesuffix(".tar.gz")
+        yield Path(place) / path.name.removesuffix(".tar.gz")
+
+
+def try_command(path: Path, shipped: bool) -> None:
+    """Runs the command of its archive."""
+    with unpacked(path) as folder:
         program = next((folder / "bin").iterdir())
-        run = [program, "run", "drape", "--scale", "0.2", "--frames", "30", "--check", "--out", f"{place}/run"]
-        done = subprocess.run(run, cwd=place, capture_output=True, text=True)
+        run = [program, "run", "drape", "--scale", "0.2", "--frames", "30", "--check", "--out", f"{folder}/run"]
+        done = subprocess.run(run, cwd=folder, capture_output=True, text=True)
         if done.returncode != 0 or "no intersection" not in done.stdout + done.stderr:
             raise SystemExit(f"{program.name} of {path.name} does not run: {done.stderr}")
         strange = [str(home).encode() for home in (ROOT, Path.home() / ".cargo") if str(home).encode() in program.read_bytes()]
-        if strange:
+        if shipped and strange:
             raise SystemExit(f"{program.name} has paths of this machine in it: {strange}")
+
+
+def try_libraries(path: Path) -> None:
+    """Compiles the example for C with header and libraries of the archive, and runs it."""
+    compiler = os.environ.get("CC", "cc")
+    if platform.system() != "Linux" or shutil.which(compiler) is None:
+        print("the libraries for C are not tried: this needs Linux and a compiler for C", file=sys.stderr)
+        return
+    with unpacked(path) as folder:
+        libraries, program = folder / "lib", folder / "drape"
+        compile_ = [compiler, "-std=c11", "-o", program, folder / "examples/drape.c", "-I", folder / "include"]
+        shared = ["-L", libraries, "-lbowknot_c", f"-Wl,-rpath,{libraries}"]
+        for linked in (shared, [libraries / "libbowknot_c.a", "-lm", "-lpthread", "-ldl"]):
+            subprocess.run([*compile_, *linked], check=True)
+            done = subprocess.run([program], cwd=folder, capture_output=True, text=True)
+            if done.returncode != 0 or ", 0 intersections\n" not in done.stdout:
+                raise SystemExit(f"the example of {path.name} does not run: {done.stdout}{done.stderr}")
+
+
+def require_licenses(path: Path) -> None:
+    """Refuses what has no licenses of its dependencies in it. The zip for Blender has those of the wheel in it."""
+    if path.suffix == ".whl":
+        with zipfile.ZipFile(path) as wheel:
+            names = wheel.namelist()
+    elif path.suffix in (".gz", ".tgz"):
+        with tarfile.open(path) as tar:
+            names = tar.getnames()
+    else:
+        return
+    if not any(name.endswith(f"/{_DEPENDENCIES}") for name in names):
+        raise SystemExit(f"{path.name} has no {_DEPENDENCIES}")
 
 
 def main() -> None:
@@ -168,15 +165,28 @@ def main() -> None:
     parser.add_argument("--version", required=True)
     parser.add_argument("--target", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--blender", type=Path, help="the extension; without it, the command and the libraries alone")
+    parser.add_argument("--blender", type=Path, help="the extension")
+    parser.add_argument("--others", action="store_true", help="the wheel, the page and the npm packages as well")
+    parser.add_argument("--built", action="store_true", help="what CI has built, with symbols and hardly compressed")
     options = parser.parse_args()
     target, out, version = options.target, options.out, options.version
-    command = command_archive(target, out, version)
-    library_archive(target, out, version)
-    try_command(command)
+    programs, libraries = (target / folder for folder in (("release", "release/deps") if options.built else ("shipped",) * 2))
+    # Those with symbols take hundreds of megabytes.
+    parts, level = target / "xtask/dist", 1 if options.built else 9
+    command = out / f"bowknot-{version}-{system()}.tar.gz"
+    library = out / f"bowknot-c-{version}-{system()}.tar.gz"
+    command_archive(programs, parts, command, level)
+    library_archive(libraries, parts, library, level)
+    try_command(command, not options.built)
+    try_libraries(library)
+    if options.others:
+        others(target, out, version)
     if options.blender is not None:
-        others(target, out, version, options.blender)
+        # Beside the archive of the command, the name says what the zip is.
+        shutil.copy2(options.blender, out / options.blender.name.replace("bowknot-", "bowknot-blender-", 1))
     files = sorted(path for path in out.iterdir() if path.is_file())
+    for path in files:
+        require_licenses(path)
     sums = "".join(f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in files)
     (out / "SHA256SUMS").write_text(sums, encoding="utf-8")
     for path in files:

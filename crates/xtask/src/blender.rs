@@ -5,16 +5,42 @@ use crate::wheel;
 use crate::workspace::target_folder;
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::{Command, ExitCode, Stdio};
 
 /// Where the extension, its tests and what packs it are.
 const FOLDER: &str = "crates/python/blender";
 
-/// Packs the wheels that are given, or one that it builds, and prints the path of the zip; tests it as well if asked to.
+/// Libraries of the system that Blender's module loads.
+const LIBRARIES: &str = "libX11.so.6 libXrender.so.1 libXxf86vm.so.1 libXfixes.so.3 libXi.so.6 libxkbcommon.so.0 libSM.so.6 \
+                         libICE.so.6 libGL.so.1 libgomp.so.1";
+
+/// What the tests need and this machine lacks, if anything.
+pub fn lacks() -> Option<&'static str> {
+    let runs = |code: &str| {
+        let status = Command::new("python3").args(["-c", code, LIBRARIES]).stderr(Stdio::null()).status();
+        status.is_ok_and(|status| status.success())
+    };
+    if !runs("import ensurepip, sys; sys.exit(sys.version_info[:2] != (3, 11))") {
+        Some("Blender's module is for Python 3.11 alone, with venv")
+    } else if cfg!(target_os = "linux")
+        && !runs("import ctypes, sys; [*map(ctypes.CDLL, sys.argv[1].split())]")
+    {
+        Some("libraries that Blender's module loads are missing: .ci/run installs them")
+    } else {
+        None
+    }
+}
+
+/// Packs the wheels that are given, the last one that was built or one that it builds, and prints the path of the zip;
+/// tests it as well if asked to.
 pub fn run(root: &Path, arguments: &[&str]) -> ExitCode {
-    let with_tests = arguments.contains(&"--test");
-    let wheels = arguments.iter().filter(|argument| argument.ends_with(".whl")).map(PathBuf::from).collect();
-    match pack_and_test(root, &target_folder(root), wheels, with_tests) {
+    let (target, with_tests) = (target_folder(root), arguments.contains(&"--test"));
+    let given = arguments.iter().filter(|argument| argument.ends_with(".whl")).map(PathBuf::from);
+    let wheels = match arguments.contains(&"--built") {
+        true => wheel::newest(&target).map(|wheel| vec![wheel]),
+        false => Ok(given.collect()),
+    };
+    match wheels.and_then(|wheels| pack_and_test(root, &target, wheels, with_tests)) {
         Ok(zip) => {
             println!("{}", zip.display());
             ExitCode::SUCCESS
@@ -41,7 +67,7 @@ pub fn pack_and_test(
     }
     let mut pack = Command::new("python3");
     pack.arg(root.join(FOLDER).join("pack.py")).arg(target.join("blender")).args(&wheels);
-    let packed = pack.stderr(std::process::Stdio::inherit()).output()?;
+    let packed = pack.stderr(Stdio::inherit()).output()?;
     if !packed.status.success() {
         return Err(Error::other("the extension was not packed"));
     }

@@ -4,7 +4,7 @@
 //! compiled. The tests come last and nothing follows them: the log ends with the test runner's own lines.
 
 use crate::workspace::{cargo, root, target_folder};
-use crate::{bowknot, docs, nightly, peers, readers, venv, web, wheel};
+use crate::{blender, bowknot, docs, nightly, peers, readers, venv, web, wheel};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -22,6 +22,9 @@ impl Step {
         Self { name, command, run: |command| Ok(command.status()?.success()) }
     }
 }
+
+/// Programs of which the browser tests take the first that is there.
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
 /// Runs the steps in order and stops at the first that fails.
 pub fn run(fast: bool) -> ExitCode {
@@ -106,8 +109,53 @@ fn all_steps(root: &Path) -> Vec<Step> {
              python3-venv"
         );
     }
+    match web_lacks() {
+        None => {
+            let mut web = xtask(root, "web --quick --test");
+            web.env(web::COMMAND, bowknot::path(&target));
+            steps.push(Step::new("web", web));
+        }
+        Some(what) => println!("==> web: skipped, because {what}"),
+    }
+    if venv::wanted() {
+        // With the wheel and the page of the steps above.
+        steps.push(Step::new("dist", xtask(root, "dist --built")));
+    } else {
+        println!("==> dist: skipped, because there is no wheel to pack");
+    }
+    steps.push(Step::new("publish", xtask(root, "publish")));
+    match blender::lacks() {
+        None => steps.push(Step::new("blender", xtask(root, "blender --test --built"))),
+        Some(what) => println!("==> blender: skipped, because {what}"),
+    }
     steps.push(Step::new("tests", cargo(root, "test --release --workspace")));
     steps
+}
+
+/// Another command of this program.
+fn xtask(root: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(std::env::current_exe().unwrap_or_else(|_| "xtask".into()));
+    command.args(arguments.split(' ')).current_dir(root);
+    command
+}
+
+/// What the tests of the browser part need and this machine lacks, if anything.
+fn web_lacks() -> Option<String> {
+    let starts = |program: &&str| {
+        let output = Command::new(program).arg("--version").output();
+        output.is_ok_and(|output| output.status.success())
+    };
+    if !wasm_is_installed() {
+        Some(format!("the target is missing: rustup target add {}", web::TARGET))
+    } else if !starts(&"node") {
+        Some("Node is missing: apt-get install nodejs".to_owned())
+    } else if !BROWSERS.iter().any(starts) {
+        Some("Chromium is missing: apt-get install chromium".to_owned())
+    } else if !venv::wanted() {
+        Some("Python 3.11 with venv is missing: apt-get install python3-venv".to_owned())
+    } else {
+        None
+    }
 }
 
 /// Runs a command whose last argument is its output folder, and removes that folder first: `bowknot run`

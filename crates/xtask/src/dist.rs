@@ -1,23 +1,37 @@
 //! `cargo xtask dist`: what a release uploads, in one folder.
 //!
 //! Cargo builds with the profile `shipped`, without symbols and with paths that are those of no machine, so that the same
-//! sources and compiler give the same bytes. `crates/xtask/dist/pack.py` collects licenses and writes archives whose times
-//! and owners are fixed, and their checksums.
+//! sources and compiler give the same bytes. `crates/xtask/dist/pack.py` writes archives whose times and owners are fixed,
+//! tries them, and writes their checksums.
 
 use crate::workspace::{cargo, succeed, target_folder};
-use crate::{blender, web};
+use crate::{blender, bowknot, licenses, web, wheel};
 use std::fs;
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
+/// The command and the libraries for C. They are built together: what is linked into one may be in the other.
+const PACKAGES: [&str; 2] = ["bowknot-cli", "bowknot-capi"];
+
 /// Shells that completions are written for, and the names of the scripts.
 const SHELLS: [(&str, &str); 4] =
     [("bash", "bowknot.bash"), ("zsh", "_bowknot"), ("fish", "bowknot.fish"), ("powershell", "_bowknot.ps1")];
 
-/// Builds everything, or the archives of the command and of the libraries alone, and tries the command.
-pub fn run(root: &Path, check: bool) -> ExitCode {
-    match build(root, &target_folder(root), check) {
+/// What is packed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Parts {
+    /// All that a release uploads.
+    All,
+    /// The command and the libraries for C.
+    Programs,
+    /// What the steps of CI have built, in the release profile, with symbols.
+    Built,
+}
+
+/// Builds and packs, and tries what is packed.
+pub fn run(root: &Path, parts: Parts) -> ExitCode {
+    match build(root, &target_folder(root), parts) {
         Ok(out) => {
             println!("{}", out.display());
             ExitCode::SUCCESS
@@ -29,7 +43,7 @@ pub fn run(root: &Path, check: bool) -> ExitCode {
     }
 }
 
-fn build(root: &Path, target: &Path, check: bool) -> Result<PathBuf> {
+fn build(root: &Path, target: &Path, what: Parts) -> Result<PathBuf> {
     let (out, parts) = (target.join("dist"), target.join("xtask/dist"));
     for folder in [&out, &parts] {
         if folder.exists() {
@@ -37,21 +51,30 @@ fn build(root: &Path, target: &Path, check: bool) -> Result<PathBuf> {
         }
         fs::create_dir_all(folder)?;
     }
-    let mut build =
-        cargo(root, "build --profile shipped --locked --package bowknot-cli --package bowknot-capi");
-    succeed(build.env("CARGO_ENCODED_RUSTFLAGS", remapped(root)))?;
-    let built = target.join("shipped");
-    let command = built.join("bowknot").with_extension(std::env::consts::EXE_EXTENSION);
-    pages(&command, &parts)?;
-    if !check {
-        web::build(root, target)?;
+    let mut command = bowknot::path(target);
+    if what != Parts::Built {
+        let mut build = cargo(root, "build --profile shipped --locked");
+        build.args(PACKAGES.iter().flat_map(|package| ["--package", package]));
+        succeed(build.env("CARGO_ENCODED_RUSTFLAGS", remapped(root)))?;
+        command = target.join("shipped").join(command.file_name().unwrap_or_default());
     }
+    pages(&command, &parts)?;
+    licenses::write(root, &PACKAGES, licenses::HOST, &parts)?;
     let mut pack = Command::new("python3");
     pack.arg(root.join("crates/xtask/dist/pack.py")).args(["--version", env!("CARGO_PKG_VERSION")]);
     pack.arg("--target").arg(target).arg("--out").arg(&out);
-    if !check {
-        // With the wheel, which it builds.
-        pack.arg("--blender").arg(blender::pack_and_test(root, target, Vec::new(), false)?);
+    match what {
+        Parts::All => {
+            web::build(root, target, false)?;
+            // With the wheel, which it builds.
+            let extension = blender::pack_and_test(root, target, Vec::new(), false)?;
+            pack.arg("--others").arg("--blender").arg(extension);
+        }
+        Parts::Programs => {}
+        Parts::Built => {
+            let extension = blender::pack_and_test(root, target, vec![wheel::newest(target)?], false)?;
+            pack.args(["--built", "--others", "--blender"]).arg(extension);
+        }
     }
     succeed(pack.current_dir(root))?;
     Ok(out)

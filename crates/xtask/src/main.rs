@@ -15,6 +15,7 @@
 //! | `blender` | packs the extension for Blender, with the wheel in it |
 //! | `dist` | builds all that a release uploads |
 //! | `web` | builds the page and the npm packages |
+//! | `publish` | makes the packages for crates.io and compiles them |
 //! | `mutations` | makes mistakes in a copy of the code, and requires that the safety tests catch each |
 //!
 //! `cargo xtask help` prints the options.
@@ -28,12 +29,14 @@ mod dist;
 mod docs;
 mod faults;
 mod hashes;
+mod licenses;
 mod miri;
 mod mutations;
 mod nightly;
 mod notebooks;
 mod peers;
 mod pictures;
+mod publish;
 mod readers;
 mod soak;
 mod twins;
@@ -59,14 +62,15 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask mutations [NAME..]
        cargo xtask twins
        cargo xtask wheel [--test]
-       cargo xtask blender [--test] [WHEEL..]
-       cargo xtask web [--test]
-       cargo xtask dist [--check]
+       cargo xtask blender [--test] [--built | WHEEL..]
+       cargo xtask web [--test] [--quick]
+       cargo xtask dist [--check | --built]
+       cargo xtask publish
        cargo xtask notebooks [NAME..]
 
 check     run what CI runs, in named steps: format, \
 clippy, docs, wasm, a small run, its exports read back, the Python
-          package, tests; the fuzz targets if there is a \
+          package, the browser part, what a release uploads, tests; the fuzz targets if there is a \
 nightly compiler, `cargo deny` if it is installed
           --fast        format, clippy and unit tests \
 only
@@ -115,14 +119,18 @@ wheel     build the Python package as a release uploads it, in target/wheels; ne
           --test        install it into an environment of its own and run its tests
 blender   pack the extension for Blender, in target/blender, with the wheels named, of other systems too, or with one that
           it builds; needs Python with venv
+          --built       with the wheel that was built last
           --test        install the zip in Blender's module bpy (500 MB, Python 3.11) and run the extension's tests
 web       build the page of crates/web into target/web, which any static server serves, and the npm packages into \
 target/npm
           --test        open the page in Chromium and compare with the command; needs Python with venv
+          --quick       without optimization of the module as a whole, and without the long tests: what CI does
 dist      build all that a release uploads, into target/dist: the command with completions, manual pages and licenses, the
           libraries for C, the wheel, the extension for Blender, the page and the npm packages, checksums; needs what the
           steps above need
-          --check       build the archives of the command and of the libraries alone, and unpack and run the command
+          --check       build the archives of the command and of the libraries alone, and unpack and try them
+          --built       pack what the steps of `check` have built, in the release profile, and try it: what CI does
+publish   make the packages that a release uploads to crates.io, and compile them from what is in them
 notebooks execute the notebooks of docs/notebooks, all or those named, with the wheel of this \
 commit, and write their outputs
           into them; needs Python with venv, and a graphics driver";
@@ -162,14 +170,19 @@ fn main() -> ExitCode {
         ["wheel"] => wheel::run(&workspace::root(), false),
         ["wheel", "--test"] => wheel::run(&workspace::root(), true),
         ["blender", arguments @ ..]
-            if arguments.iter().all(|argument| *argument == "--test" || argument.ends_with(".whl")) =>
+            if arguments
+                .iter()
+                .all(|word| ["--test", "--built"].contains(word) || word.ends_with(".whl")) =>
         {
             blender::run(&workspace::root(), arguments)
         }
-        ["dist"] => dist::run(&workspace::root(), false),
-        ["dist", "--check"] => dist::run(&workspace::root(), true),
-        ["web"] => web::run(&workspace::root(), false),
-        ["web", "--test"] => web::run(&workspace::root(), true),
+        ["publish"] => publish::run(&workspace::root()),
+        ["dist"] => dist::run(&workspace::root(), dist::Parts::All),
+        ["dist", "--check"] => dist::run(&workspace::root(), dist::Parts::Programs),
+        ["dist", "--built"] => dist::run(&workspace::root(), dist::Parts::Built),
+        ["web", options @ ..] if options.iter().all(|option| ["--test", "--quick"].contains(option)) => {
+            web::run(&workspace::root(), options.contains(&"--test"), options.contains(&"--quick"))
+        }
         ["notebooks", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             notebooks::run(&workspace::root(), names)
         }

@@ -3,11 +3,14 @@
 //! Cargo compiles the crate for the web, and the tool `wasm-bindgen` writes the JavaScript that calls it; it has the
 //! version of the crate of that name in `Cargo.lock`. The viewer of the page is that of `crates/report`.
 
-use crate::bowknot;
-use crate::venv;
 use crate::workspace::{cargo, succeed, target_folder};
+use crate::{bowknot, licenses, venv};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use std::fs;
-use std::io::{Error, Result};
+use std::io::{Error, Result, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
@@ -35,14 +38,17 @@ const VIEWER: [&str; 8] = [
 /// Vector instructions, which all browsers have had since 2023, and a stack like that of the command's threads.
 const FLAGS: &str = "-C target-feature=+simd128 -C link-arg=-zstack-size=8388608";
 
+/// The variable of the environment that names the command to compare with.
+pub const COMMAND: &str = "BOWKNOT_COMMAND";
+
 /// Most bytes of the page, each of its files compressed by gzip.
 const MOST: usize = 3_000_000;
 
-/// Builds, and tests as well if asked to.
-pub fn run(root: &Path, with_tests: bool) -> ExitCode {
+/// Builds, and tests as well if asked to. `quick`: without the optimization of the whole, and not all of the tests.
+pub fn run(root: &Path, with_tests: bool, quick: bool) -> ExitCode {
     let target = target_folder(root);
-    let done = build(root, &target).and_then(|()| match with_tests {
-        true => test(root, &target),
+    let done = build(root, &target, quick).and_then(|()| match with_tests {
+        true => test(root, &target, quick),
         false => Ok(()),
     });
     match done {
@@ -55,12 +61,14 @@ pub fn run(root: &Path, with_tests: bool) -> ExitCode {
 }
 
 /// Builds the page into `target/web` and the packages into `target/npm`, and prints how large they are.
-pub fn build(root: &Path, target: &Path) -> Result<()> {
-    let mut build = cargo(root, "build --profile wasm --package bowknot-web --target");
+pub fn build(root: &Path, target: &Path, quick: bool) -> Result<()> {
+    // Macros and build scripts of the release profile are those of the command.
+    let profile = if quick { "release" } else { "wasm" };
+    let mut build = cargo(root, "build --package bowknot-web --profile");
     // Flags of the environment would take the place of these.
-    build.arg(TARGET).env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", FLAGS);
+    build.args([profile, "--target", TARGET]).env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", FLAGS);
     succeed(&mut build)?;
-    let wasm = target.join(TARGET).join("wasm/bowknot_web.wasm");
+    let wasm = target.join(TARGET).join(profile).join("bowknot_web.wasm");
     let tool = bindgen(root, target)?;
     let (page, npm) = (target.join("web"), target.join("npm"));
     for folder in [&page, &npm] {
@@ -70,6 +78,12 @@ pub fn build(root: &Path, target: &Path) -> Result<()> {
     }
     write_page(root, &tool, &wasm, &page)?;
     write_packages(root, &tool, &wasm, &npm)?;
+    for folder in [&page, &npm.join("bowknot"), &npm.join("bowknot-compat")] {
+        for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
+            fs::copy(root.join(license), folder.join(license))?;
+        }
+        licenses::write(root, &["bowknot-web"], TARGET, folder)?;
+    }
     let size = report(&page)?;
     report(&npm.join("bowknot"))?;
     report(&npm.join("bowknot-compat"))?;
@@ -102,16 +116,13 @@ fn write_packages(root: &Path, tool: &Path, wasm: &Path, npm: &Path) -> Result<(
         let manifest = folder.join("package.json");
         let text = fs::read_to_string(&manifest)?.replace("\"0.0.0\"", &format!("\"{version}\""));
         fs::write(manifest, text)?;
-        for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
-            fs::copy(root.join(license), folder.join(license))?;
-        }
     }
     glue(tool, wasm, &npm.join("bowknot"), &[])?;
     // Bundlers would look for the file that the glue names.
     let compat = npm.join("bowknot-compat");
     glue(tool, wasm, &compat, &["--omit-default-module-path"])?;
     let module = compat.join("bowknot_bg.wasm");
-    let inlined = format!("export default \"{}\";\n", base64(&fs::read(&module)?));
+    let inlined = format!("export default \"{}\";\n", STANDARD.encode(fs::read(&module)?));
     fs::write(compat.join("module.js"), inlined)?;
     fs::remove_file(module)?;
     fs::remove_file(compat.join("bowknot_bg.wasm.d.ts"))
@@ -132,8 +143,9 @@ fn bindgen(root: &Path, target: &Path) -> Result<PathBuf> {
     if let Some(tool) = found(target, &version) {
         return Ok(tool);
     }
-    println!("==> installing wasm-bindgen {version}, which takes some minutes once");
-    let mut install = cargo(root, "install wasm-bindgen-cli --quiet --version");
+    println!("==> installing wasm-bindgen {version}, which takes a minute or two once");
+    // It runs for seconds, so it need not be optimized, which takes longer.
+    let mut install = cargo(root, "install wasm-bindgen-cli --quiet --debug --version");
     install.arg(&version).arg("--root").arg(target.join("xtask"));
     succeed(&mut install)?;
     found(target, &version).ok_or_else(|| Error::other("cargo has installed another version of wasm-bindgen"))
@@ -157,15 +169,22 @@ fn bindgen_version(root: &Path) -> Result<String> {
     entry.map(|(version, _)| version.to_owned()).ok_or_else(|| Error::other("Cargo.lock has no wasm-bindgen"))
 }
 
-/// Opens the page in a browser and compares what it computes with the command, which is built first.
-fn test(root: &Path, target: &Path) -> Result<()> {
-    let command = bowknot::build(root).map_err(Error::other)?;
+/// Opens the page in a browser and compares what it computes with the command, which is built first unless the
+/// environment names one.
+fn test(root: &Path, target: &Path, quick: bool) -> Result<()> {
+    let command = match std::env::var_os(COMMAND) {
+        Some(command) => command.into(),
+        None => bowknot::build(root).map_err(Error::other)?,
+    };
     let (folder, tests) = (target.join("xtask/web"), root.join(CRATE).join("tests"));
     venv::ensure(&folder, &tests.join("requirements.txt"))?;
     let mut pytest = Command::new(venv::python(&folder));
     // What they print, frame rates and errors, is part of the result.
     pytest.args(["-m", "pytest", "--quiet", "-rs", "--capture=no", "-p", "no:cacheprovider"]).arg(tests);
-    succeed(pytest.env("BOWKNOT_COMMAND", command).env("BOWKNOT_TARGET", target).current_dir(root))
+    if quick {
+        pytest.args(["-m", "not long"]);
+    }
+    succeed(pytest.env(COMMAND, command).env("BOWKNOT_TARGET", target).current_dir(root))
 }
 
 /// Prints the size of each file of a folder and of all, as they are and compressed. Returns the latter.
@@ -187,13 +206,11 @@ fn report(folder: &Path) -> Result<usize> {
     Ok(total[1])
 }
 
-/// The size of a file compressed by gzip, which most servers do; its own where there is no gzip.
+/// The size of a file compressed by gzip, which most servers do.
 fn compressed(file: &Path) -> Result<usize> {
-    let output = Command::new("gzip").args(["-9", "--stdout"]).arg(file).output();
-    Ok(match output {
-        Ok(output) if output.status.success() => output.stdout.len(),
-        _ => fs::metadata(file)?.len() as usize,
-    })
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(&fs::read(file)?)?;
+    Ok(encoder.finish()?.len())
 }
 
 /// The files of a folder and of those in it, sorted.
@@ -217,30 +234,4 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
         fs::copy(&file, place)?;
     }
     Ok(())
-}
-
-/// Bytes as base64 text.
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let word = (0..3).fold(0u32, |word, k| word << 8 | u32::from(chunk.get(k).copied().unwrap_or(0)));
-        for k in 0..4 {
-            let digit = DIGITS[(word >> (18 - 6 * k) & 63) as usize];
-            text.push(if k <= chunk.len() { char::from(digit) } else { '=' });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn base64_is_that_of_rfc_4648() {
-        for (bytes, text) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
-            assert_eq!(super::base64(bytes.as_bytes()), text);
-        }
-    }
 }

@@ -3,9 +3,8 @@
 //! Maturin builds the wheel in the target folder and the release profile of the workspace. The tests run in an
 //! environment into which the wheel is installed, so that they see what users get.
 
-use crate::bowknot;
-use crate::venv;
 use crate::workspace::target_folder;
+use crate::{bowknot, licenses, venv};
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -54,6 +53,8 @@ pub fn build(command: &mut Command) -> Result<bool> {
     let folder = venv::folder(Path::new(command.get_program()));
     let root = command.get_current_dir().unwrap_or(Path::new("."));
     venv::ensure(&folder, &root.join(CRATE).join("tests/requirements.txt"))?;
+    // Maturin takes files of this name into the wheel.
+    licenses::write(root, &["bowknot-python"], licenses::HOST, &root.join(CRATE))?;
     // Those of earlier builds.
     for wheel in command.get_args().last().map(Path::new).into_iter().flat_map(found) {
         std::fs::remove_file(wheel)?;

@@ -2,7 +2,7 @@
 
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 /// The workspace's root: this crate lies two folders below it.
 pub fn root() -> PathBuf {
@@ -24,4 +24,11 @@ pub fn cargo(root: &Path, arguments: &str) -> Command {
 /// Runs a command; an error if it fails.
 pub fn succeed(command: &mut Command) -> Result<()> {
     if command.status()?.success() { Ok(()) } else { Err(Error::other(format!("{command:?} failed"))) }
+}
+
+/// What a command prints; an error if it fails.
+pub fn output(command: &mut Command) -> Result<String> {
+    let output = command.stderr(Stdio::inherit()).output()?;
+    let text = String::from_utf8(output.stdout).map_err(Error::other)?;
+    if output.status.success() { Ok(text) } else { Err(Error::other(format!("{command:?} failed"))) }
 }
