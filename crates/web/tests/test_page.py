@@ -11,7 +11,8 @@ from browser import Browser
 #: Frames of each scene.
 FRAMES = 50
 
-SCENES = ["drape", "hair", *(pytest.param(scene, marks=pytest.mark.long) for scene in ["stack", "tube", "trampoline", "sand"])]
+LONG = [pytest.param(scene, marks=pytest.mark.long) for scene in ["stack", "tube", "trampoline", "sand"]]
+SCENES = ["drape", "hair", *LONG]
 
 BOX = """v 0 0 0
 v 2 0 0

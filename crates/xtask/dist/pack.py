@@ -170,7 +170,8 @@ def main() -> None:
     parser.add_argument("--built", action="store_true", help="what CI has built, with symbols and hardly compressed")
     options = parser.parse_args()
     target, out, version = options.target, options.out, options.version
-    programs, libraries = (target / folder for folder in (("release", "release/deps") if options.built else ("shipped",) * 2))
+    folders = ("release", "release/deps") if options.built else ("shipped", "shipped")
+    programs, libraries = (target / folder for folder in folders)
     # Those with symbols take hundreds of megabytes.
     parts, level = target / "xtask/dist", 1 if options.built else 9
     command = out / f"bowknot-{version}-{system()}.tar.gz"
