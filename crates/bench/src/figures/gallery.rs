@@ -59,6 +59,9 @@ const fn film(name: &'static str, run: &'static str, camera: &'static str) -> Fi
 /// Sizes [pixels] that are tried in turn until a film is small enough, and the largest size of a file [bytes].
 const SIZES: [&str; 4] = ["400x300", "320x240", "280x210", "240x180"];
 const MAX_BYTES: u64 = 600_000;
+/// Number of frames of films of long runs. Those of others are as many as the command chooses, at most a quarter of the
+/// time steps of 1/100 s.
+const MAX_FRAMES: usize = 60;
 
 /// What a run reports.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -125,7 +128,7 @@ impl Figure for Gallery {
             let cost =
                 bench.store.measured(&format!("gallery/{}", film.name), || measure(film, bench, &folder))?;
             if bench.size == Size::Full && folder.exists() {
-                draw(film, &folder)?;
+                draw(film, &folder, cost.frames)?;
             }
             println!("  {:<30} {:.1} CPU s", film.run, cost.cpu_seconds);
             states += cost.frames;
@@ -182,18 +185,26 @@ fn measure(film: &Film, bench: &Bench, folder: &Path) -> Result<Cost> {
     })
 }
 
-/// Draws the run in `folder` into docs/gallery, by the command beside this program.
-fn draw(film: &Film, folder: &Path) -> Result<()> {
+/// Draws the run of so many time steps in `folder` into docs/gallery, by the command beside this program, unless the film
+/// is newer than the run.
+fn draw(film: &Film, folder: &Path, frames: usize) -> Result<()> {
+    let out = root().join(pages::FILMS).join(film.name).with_extension("gif");
+    let time = |path: &Path| fs::metadata(path).and_then(|file| file.modified()).ok();
+    if time(&out) > time(&folder.join("summary.json")) {
+        return Ok(());
+    }
     let command = env::current_exe()?.with_file_name("bowknot").with_extension(env::consts::EXE_EXTENSION);
     ensure!(
         command.exists(),
         "{} is missing, which draws: cargo build --release -p bowknot-cli",
         command.display()
     );
-    let out = root().join(pages::FILMS).join(film.name).with_extension("gif");
     for size in SIZES {
         let mut render = Command::new(&command);
         render.arg("render").arg(folder).args(["--quiet", "--size", size]);
+        if frames > 4 * MAX_FRAMES {
+            render.arg("--frames").arg(format!("..:{}", frames.div_ceil(MAX_FRAMES)));
+        }
         let output = render.args(film.camera.split_whitespace()).arg("--out").arg(&out).output()?;
         ensure!(output.status.success(), "{render:?}: {}", String::from_utf8_lossy(&output.stderr));
         if fs::metadata(&out).with_context(|| out.display().to_string())?.len() <= MAX_BYTES {
