@@ -199,16 +199,24 @@ fn draw(film: &Film, folder: &Path, frames: usize) -> Result<()> {
         "{} is missing, which draws: cargo build --release -p bowknot-cli",
         command.display()
     );
-    for size in SIZES {
+    let (mut sizes, mut most) = (SIZES.iter(), (frames > 4 * MAX_FRAMES).then_some(MAX_FRAMES));
+    let mut size = sizes.next();
+    while let Some(pixels) = size {
         let mut render = Command::new(&command);
-        render.arg("render").arg(folder).args(["--quiet", "--size", size]);
-        if frames > 4 * MAX_FRAMES {
-            render.arg("--frames").arg(format!("..:{}", frames.div_ceil(MAX_FRAMES)));
+        render.arg("render").arg(folder).args(["--quiet", "--size", pixels]);
+        if let Some(most) = most {
+            render.arg("--frames").arg(format!("..:{}", frames.div_ceil(most)));
         }
         let output = render.args(film.camera.split_whitespace()).arg("--out").arg(&out).output()?;
         ensure!(output.status.success(), "{render:?}: {}", String::from_utf8_lossy(&output.stderr));
-        if fs::metadata(&out).with_context(|| out.display().to_string())?.len() <= MAX_BYTES {
+        let bytes = fs::metadata(&out).with_context(|| out.display().to_string())?.len();
+        if bytes <= MAX_BYTES {
             return Ok(());
+        }
+        if bytes > 3 * MAX_BYTES / 2 && most.is_none_or(|most| most > MAX_FRAMES / 2) {
+            most = Some(most.map_or(MAX_FRAMES.min(frames / 2), |_| MAX_FRAMES / 2));
+        } else {
+            size = sizes.next();
         }
     }
     bail!("{} is larger than {MAX_BYTES} bytes at {}", out.display(), SIZES[SIZES.len() - 1])
