@@ -12,6 +12,7 @@ pub struct Table {
 pub enum Entry {
     Text(String),
     Number(f64),
+    Count(usize),
 }
 
 impl From<&str> for Entry {
@@ -34,7 +35,7 @@ impl From<f64> for Entry {
 
 impl From<usize> for Entry {
     fn from(number: usize) -> Self {
-        Self::Number(number as f64)
+        Self::Count(number)
     }
 }
 
@@ -61,6 +62,7 @@ impl Table {
                 .map(|entry| match entry {
                     Entry::Text(text) => text.clone(),
                     Entry::Number(number) => short(*number),
+                    Entry::Count(count) => thousands(*count as f64),
                 })
                 .collect();
             text.push_str(&line(&cells));
@@ -83,6 +85,7 @@ impl Table {
                 Entry::Text(text) => quoted(text),
                 Entry::Number(number) if number.is_nan() => String::new(),
                 Entry::Number(number) => number.to_string(),
+                Entry::Count(count) => count.to_string(),
             });
             lines.push(cells.collect::<Vec<_>>().join(","));
         }

@@ -141,7 +141,7 @@ impl Figure for Gallery {
                 cost.cpu_seconds.into(),
                 (cost.cpu_seconds / cost.frames as f64).into(),
                 cost.two_way_steps[0].into(),
-                cost.two_way_steps[1].into(),
+                (cost.two_way_steps[1] as usize).into(),
                 cost.max_stretch.into(),
                 (1e3 * cost.min_gap).into(),
                 cost.unsolved.into(),
