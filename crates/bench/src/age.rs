@@ -50,12 +50,13 @@ struct Ages<'a> {
 }
 
 impl Ages<'_> {
-    /// Whether more than [`MAX_FILES`] files of the solver differ from that commit, or it is in no history.
+    /// Whether more than [`MAX_FILES`] files of the solver differ from that commit. Of one that the history
+    /// here does not have nobody can say.
     fn is_stale(&mut self, commit: &str) -> bool {
         *self.known.entry(commit.to_owned()).or_insert_with(|| {
             let mut arguments = vec!["diff", "--name-only", commit, "HEAD", "--"];
             arguments.extend(SOLVER);
-            git::output(self.root, &arguments).is_none_or(|files| files.lines().count() > MAX_FILES)
+            git::output(self.root, &arguments).is_some_and(|files| files.lines().count() > MAX_FILES)
         })
     }
 }
