@@ -4,7 +4,7 @@
 //! compiled. The tests come last and nothing follows them: the log ends with the test runner's own lines.
 
 use crate::workspace::{cargo, root, target_folder};
-use crate::{blender, bowknot, docs, nightly, peers, readers, venv, web, wheel};
+use crate::{bowknot, docs, nightly, peers, readers, venv, web, wheel};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -124,10 +124,6 @@ fn all_steps(root: &Path) -> Vec<Step> {
         println!("==> dist: skipped, because there is no wheel to pack");
     }
     steps.push(Step::new("publish", xtask(root, "publish")));
-    match blender::lacks() {
-        None => steps.push(Step::new("blender", xtask(root, "blender --test --built"))),
-        Some(what) => println!("==> blender: skipped, because {what}"),
-    }
     steps.push(Step::new("tests", cargo(root, "test --release --workspace")));
     steps
 }

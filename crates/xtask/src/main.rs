@@ -62,7 +62,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask mutations [NAME..]
        cargo xtask twins
        cargo xtask wheel [--test]
-       cargo xtask blender [--test] [--built | WHEEL..]
+       cargo xtask blender [--test] [WHEEL..]
        cargo xtask web [--test] [--quick]
        cargo xtask dist [--check | --built]
        cargo xtask publish
@@ -119,7 +119,6 @@ wheel     build the Python package as a release uploads it, in target/wheels; ne
           --test        install it into an environment of its own and run its tests
 blender   pack the extension for Blender, in target/blender, with the wheels named, of other systems too, or with one that
           it builds; needs Python with venv
-          --built       with the wheel that was built last
           --test        install the zip in Blender's module bpy (500 MB, Python 3.11) and run the extension's tests
 web       build the page of crates/web into target/web, which any static server serves, and the npm packages into \
 target/npm
@@ -170,9 +169,7 @@ fn main() -> ExitCode {
         ["wheel"] => wheel::run(&workspace::root(), false),
         ["wheel", "--test"] => wheel::run(&workspace::root(), true),
         ["blender", arguments @ ..]
-            if arguments
-                .iter()
-                .all(|word| ["--test", "--built"].contains(word) || word.ends_with(".whl")) =>
+            if arguments.iter().all(|word| *word == "--test" || word.ends_with(".whl")) =>
         {
             blender::run(&workspace::root(), arguments)
         }
