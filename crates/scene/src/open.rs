@@ -161,3 +161,28 @@ impl<'de> Deserialize<'de> for Scene {
         read::scene(&source, Path::new(""), "scene").map_err(de::Error::custom)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn materials_are_read_as_scene_files_have_them() {
+        let silk = Material::from_toml(BodyKind::Cloth, "\"silk\"").expect("a named material");
+        assert_eq!(Some(silk), Material::named(BodyKind::Cloth, "silk"));
+        let Ok(Material::Solid(solid)) = Material::from_toml(BodyKind::Solid, "{ young_modulus = 2e5 }")
+        else {
+            panic!("a material by its numbers");
+        };
+        assert_eq!(solid.young_modulus, 2e5);
+        for (text, words) in [
+            ("silk", "material: string values must be quoted"),
+            ("\"silc\"", "did you mean silicone"),
+            ("{ youngs = 1.0 }", "material.youngs: unknown key"),
+            ("{ young_modulus = -1.0 }", "material.young_modulus: -1 Pa must be finite"),
+        ] {
+            let error = Material::from_toml(BodyKind::Solid, text).expect_err(text).to_string();
+            assert!(error.contains(words), "{text}: {error}");
+        }
+    }
+}

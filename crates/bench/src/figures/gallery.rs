@@ -59,8 +59,8 @@ const fn film(name: &'static str, run: &'static str, camera: &'static str) -> Fi
 /// Sizes [pixels] that are tried in turn until a film is small enough, and the largest size of a file [bytes].
 const SIZES: [&str; 4] = ["400x300", "320x240", "280x210", "240x180"];
 const MAX_BYTES: u64 = 600_000;
-/// Number of frames of films of long runs. Those of others are as many as the command chooses, at most a quarter of the
-/// time steps of 1/100 s.
+/// Largest number of frames of films of runs with more than four times as many time steps, and of films that would be far
+/// too large. Others have as many as `bowknot render` chooses, 30 per second at most.
 const MAX_FRAMES: usize = 60;
 
 /// What a run reports.
@@ -71,9 +71,11 @@ struct Cost {
     cpu_seconds: f64,
     /// Two-way steps per time step: mean and largest.
     two_way_steps: [f64; 2],
+    /// Largest over the time steps [1].
     max_stretch: f64,
-    /// Largest over the time steps [m].
+    /// Smallest over the time steps [m].
     min_gap: f64,
+    /// Number of time steps.
     unsolved: usize,
     intersections: usize,
 }
