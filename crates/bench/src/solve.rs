@@ -52,7 +52,7 @@ impl From<StageSeconds> for Stages {
 /// What results are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Against {
-    /// The reference solution if there is one; finding it takes up to a minute per problem.
+    /// The reference solution if there is one; finding it takes up to minutes per problem.
     Reference,
     /// Nothing: only stationarity and violations are measured.
     Residuals,
@@ -78,12 +78,12 @@ pub fn compare(
                     continue;
                 }
                 let key = |kind: &str| format!("{kind}/{}/{}/{round}", case.name, setting.key());
-                let found = bench.store.find(&key("solve"));
+                let found = bench.store.find(&key("solved"));
                 // A result that was compared with the reference has residuals too.
                 let (found, key) = match against {
-                    Against::Reference => (found, key("solve")),
+                    Against::Reference => (found, key("solved")),
                     Against::Residuals => {
-                        (found.or_else(|| bench.store.find(&key("residuals"))), key("residuals"))
+                        (found.or_else(|| bench.store.find(&key("unreferenced"))), key("unreferenced"))
                     }
                 };
                 if let Some(found) = found {

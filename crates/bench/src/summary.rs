@@ -193,6 +193,7 @@ impl Summary {
             self.met.into(),
             self.failed.into(),
             (1e3 * self.violation).into(),
+            (1e3 * self.stationarity).into(),
             (1e3 * self.distance).into(),
             self.stretch.into(),
             (1e3 * self.gap).into(),
@@ -202,7 +203,7 @@ impl Summary {
 }
 
 /// Columns of [`table`]; the page explains them.
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [&str; 17] = [
     "scene",
     "method",
     "cpu_s",
@@ -215,6 +216,7 @@ const COLUMNS: [&str; 16] = [
     "met_rule",
     "failed",
     "violation_mm",
+    "stationarity_mm",
     "to_target_mm",
     "max_stretch",
     "min_gap_mm",

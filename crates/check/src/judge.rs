@@ -156,8 +156,11 @@ impl Judge {
         }
     }
 
-    /// Vertices of either side of a pair.
-    pub(super) fn sides(&self, class: PairClass, [a, b]: [u32; 2]) -> [&[u32]; 2] {
+    /// Vertices of either side of a pair; none for a half-space.
+    ///
+    /// # Panics
+    /// If the elements are not of this judge.
+    pub fn sides(&self, class: PairClass, [a, b]: [u32; 2]) -> [&[u32]; 2] {
         let vertex = |v: u32| {
             // `vertices` is sorted and holds every vertex that can be in a pair.
             let at = self.vertices.partition_point(|&w| w < v);

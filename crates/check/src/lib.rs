@@ -7,6 +7,7 @@
 //! Judge::from_model(&CollisionModel) -> Judge                           a scene
 //! judge.check_state(&x, &StateOptions)  -> Result<StateReport, CheckError>
 //! judge.check_path(&x0, &x1, &PathOptions) -> Result<PathReport, CheckError>
+//! judge.pairs_within(&x, distance)      -> Result<Vec<NearPair>, CheckError>
 //! MotionJudge::new(judge)                                               many states and paths, one after another
 //! judge.offending_mesh(&x, &[Intersection]) -> OffendingMesh            for a dump
 //! ```
@@ -32,6 +33,7 @@ mod exceptions;
 mod intersections;
 mod judge;
 mod motion;
+mod near;
 mod nearest;
 mod path;
 mod primitives;
@@ -50,5 +52,6 @@ pub use error::CheckError;
 pub use judge::{Judge, Parts};
 pub use motion::MotionJudge;
 pub use report::{
-    BodyPair, Intersection, Nearest, PairClass, PathHit, PathOptions, PathReport, StateOptions, StateReport,
+    BodyPair, Intersection, NearPair, Nearest, PairClass, PathHit, PathOptions, PathReport, StateOptions,
+    StateReport,
 };

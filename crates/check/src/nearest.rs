@@ -58,10 +58,7 @@ impl Judge {
         let (_, class, elements) = heights.chain(pairs).reduce_with(smaller)?;
 
         let sides = self.sides(class, elements);
-        let (places, distance) = match class {
-            PairClass::VertexHalfSpace => self.half_space_places(elements, &x[elements[0] as usize]),
-            _ => closest_points(class, &gather(x, sides)),
-        };
+        let (places, distance) = self.measured(class, elements, x);
         let vertices = sides.map(<[u32]>::to_vec);
         Some(Nearest { class, elements, vertices, bodies: self.side_bodies(sides), places, distance })
     }

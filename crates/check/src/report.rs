@@ -77,6 +77,19 @@ pub struct Nearest {
     pub distance: f64,
 }
 
+/// Two primitives that are near each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearPair {
+    /// What kind of primitives they are.
+    pub class: PairClass,
+    /// Indices of the primitives, see [`Intersection::elements`].
+    pub elements: [u32; 2],
+    /// Closest points of either side [m].
+    pub places: [Point; 2],
+    /// Their distance, to rounding [m]; negative only below a half-space.
+    pub distance: f64,
+}
+
 /// How two bodies, or one with itself, intersect.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize))]

@@ -42,9 +42,10 @@ impl Figure for CollisionError {
                  the root of the sum of squares of three quantities: the stationarity residual (the motion \
                  that would still bring x closer to its target and that no active row forbids), the largest \
                  violation of a contact, and the largest excess of an edge over its limit, as a share, times \
-                 the edge length. The reference is `fast` with 200 sweeps, iterated to rest and checked by \
-                 its residuals. The problems are not convex: a method may end in another good minimum. All \
-                 results are measured with the rows of `fast`, whose edge limits refer to the rest lengths. \
+                 the edge length. The reference comes from a separate solver of the problem as stated, which \
+                 shares nothing with any method, and is checked by its residuals. The problems are not \
+                 convex: a method may end in another good minimum, nearer to its target. Edge limits of the \
+                 problem refer to the rest lengths. \
                  `paper` limits edges against the start of the call and so solves another problem; `paper, \
                  edges from rest` solves the same one. Barriers and impact zones have no edge limits. Impact \
                  zones only prevent intersections and keep no distance: a target without intersections on \
@@ -56,7 +57,7 @@ impl Figure for CollisionError {
                 "The same with targets of a dynamics without repulsion (`--set \
                  solver.repulsion.stiffness=0`), which lie deep in penetration. The paper's simulator has a \
                  repulsive model (section 6.2), so these are not the paper's targets. Hard problems have no \
-                 reference solution: their linearization does not come to rest within a minute. Barriers and \
+                 reference solution: the separate solver does not come to an end within its time. Barriers and \
                  impact zones have no edge limits, which is part of their error here; `contacts-alone` \
                  compares without limits."
             }

@@ -1,14 +1,12 @@
 //! Measures the quality of a result.
 
-use super::rows::RowSet;
+use super::nonnegative;
+use super::statement::{About, Constraint, Statement};
 use crate::case::CollisionCase;
 use anyhow::Result;
-use bowknot::check::{Judge, StateOptions};
-use bowknot::geometry::Point;
-use bowknot::proximity::ProximitySearch;
-use bowknot::twoway::{CallInput, CollisionScene};
+use bowknot::check::StateOptions;
+use bowknot::geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
-use std::cell::RefCell;
 
 /// The measured quality of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -17,13 +15,13 @@ pub struct Quality {
     pub objective: f64,
     /// Root mean square of |x - y0| over mass [m].
     pub distance: f64,
-    /// Largest violation of a contact row, delta_p less the gap [m]; 0 if none is violated.
+    /// Largest violation of a contact, its contact distance less its gap [m]; 0 if none is violated.
     pub violation: f64,
     /// Largest excess of an edge over its limit, as a share of the limit [1]; negative if no edge reaches its
     /// limit.
     pub stretch_violation: f64,
     /// Stationarity residual, root mean square over mass [m]: the motion from x that lessens the objective
-    /// and that no active row forbids.
+    /// and that no active constraint forbids.
     pub stationarity: f64,
     /// Largest stationarity residual of a vertex [m].
     pub stationarity_max: f64,
@@ -44,16 +42,16 @@ pub struct Quality {
 /// candidates for the reference solution.
 const ITERATIONS: [usize; 2] = [400, 6000];
 
+/// Slack below which a constraint counts as active: of contacts in contact distances, of edges in limits. Methods
+/// stop that far from their active rows.
+const ACTIVE: [f64; 2] = [0.1, 0.02];
+
 /// Measures the quality of the results of a case.
 #[derive(Debug)]
 pub struct CaseEvaluator<'a> {
-    case: &'a CollisionCase,
-    scene: CollisionScene,
-    call: CallInput,
-    judge: Judge,
+    pub statement: Statement<'a>,
     /// Iterations of non-negative least squares.
     iterations: usize,
-    search: RefCell<ProximitySearch>,
     reference: Option<Vec<Point>>,
 }
 
@@ -63,7 +61,7 @@ impl<'a> CaseEvaluator<'a> {
     /// # Errors
     /// If the case has unsound parameters.
     pub fn of_residuals(case: &'a CollisionCase) -> Result<Self> {
-        Self::with_iterations(case, ITERATIONS[0])
+        Ok(Self { statement: Statement::new(case)?, iterations: ITERATIONS[0], reference: None })
     }
 
     /// Without a reference solution, for a candidate of one: residuals are measured more exactly.
@@ -71,20 +69,7 @@ impl<'a> CaseEvaluator<'a> {
     /// # Errors
     /// If the case has unsound parameters.
     pub fn of_candidate(case: &'a CollisionCase) -> Result<Self> {
-        Self::with_iterations(case, ITERATIONS[1])
-    }
-
-    fn with_iterations(case: &'a CollisionCase, iterations: usize) -> Result<Self> {
-        let (scene, call) = case.reference()?;
-        Ok(Self {
-            case,
-            scene,
-            call,
-            judge: Judge::from_model(&case.model),
-            iterations,
-            search: RefCell::new(ProximitySearch::new(&case.model)),
-            reference: None,
-        })
+        Ok(Self { iterations: ITERATIONS[1], ..Self::of_residuals(case)? })
     }
 
     /// The same with a reference solution; none: the case has none.
@@ -93,43 +78,58 @@ impl<'a> CaseEvaluator<'a> {
         Self { reference, ..self }
     }
 
-    /// The scene with the parameters that results are measured with.
-    pub fn scene(&self) -> &CollisionScene {
-        &self.scene
-    }
-
     /// Measures the quality of a result.
     ///
     /// # Errors
     /// If `x` does not fit the case.
     pub fn evaluate(&self, x: &[Point]) -> Result<Quality> {
-        let (scene, call, states) = (&self.scene, &self.call, &self.case.states);
-        let rows = RowSet::new(scene, call, states, x, &mut self.search.borrow_mut());
-        let residual = rows.stationarity(scene, call, x, &states.y, self.iterations);
-        let distances = x.iter().zip(&states.y).map(|(x, y)| x - y);
-        let total: f64 = (0..x.len()).filter(|&v| call.is_movable(v)).map(|v| scene.relative_mass(v)).sum();
-        let weighted = |vectors: &mut dyn Iterator<Item = f64>| -> f64 {
-            let squares = vectors.enumerate().filter(|(v, _)| call.is_movable(*v));
-            squares.map(|(v, square)| scene.relative_mass(v) * square).sum()
-        };
-        let mean = |sum: f64| (sum / total.max(f64::MIN_POSITIVE)).sqrt();
-        let square = weighted(&mut distances.map(|d| d.norm_squared()));
-        let error = self.reference.as_ref().map(|reference| {
-            mean(weighted(&mut x.iter().zip(reference).map(|(a, b)| (a - b).norm_squared())))
-        });
+        let statement = &self.statement;
+        let target = &statement.case.states.y;
+        let constraints = statement.constraints(x, statement.range())?;
+        let pairs = || constraints.iter().filter(|c| matches!(c.about, About::Pair(..)));
+        let [to_limit, to_start, to_rest] = statement.stretch(x);
+        let residual = self.stationarity(x, &constraints);
+        let square = self.mean(x.iter().zip(target).map(|(x, y)| x - y));
+        let error = self.reference.as_ref().map(|r| self.mean(x.iter().zip(r).map(|(a, b)| a - b)).sqrt());
+        let mass: f64 = statement.masses.iter().sum();
         let options = StateOptions { limit: 0, distance: false };
         Ok(Quality {
-            objective: 0.5 * scene.mean_mass() * square,
-            distance: mean(square),
-            violation: rows.contact_violation(),
-            stretch_violation: rows.stretch.to_limit - 1.0,
-            stationarity: mean(weighted(&mut residual.iter().map(|r| r.norm_squared()))),
-            stationarity_max: residual.iter().map(|r| r.norm()).fold(0.0, f64::max),
-            min_gap: rows.min_gap,
-            step_stretch: rows.stretch.to_start,
-            rest_stretch: rows.stretch.to_rest,
-            intersections: self.judge.check_state(x, &options)?.intersection_count,
+            objective: 0.5 * statement.scene.mean_mass() * mass * square,
+            distance: square.sqrt(),
+            violation: pairs().map(|c| -c.value).fold(0.0, f64::max),
+            stretch_violation: to_limit - 1.0,
+            stationarity: self.mean(residual.iter().copied()).sqrt(),
+            stationarity_max: residual.iter().map(Vector::norm).fold(0.0, f64::max),
+            min_gap: pairs().map(|c| c.value + c.length).min_by(f64::total_cmp),
+            step_stretch: to_start,
+            rest_stretch: to_rest,
+            intersections: statement.judge.check_state(x, &options)?.intersection_count,
             error,
         })
+    }
+
+    /// The mean of squares of the movable vertices' vectors over mass.
+    fn mean(&self, vectors: impl Iterator<Item = Vector>) -> f64 {
+        let masses = &self.statement.masses;
+        let sum: f64 = vectors.zip(masses).map(|(vector, mass)| mass * vector.norm_squared()).sum();
+        sum / masses.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
+    /// The projection of y0 - x onto the motions that no active constraint forbids, in the metric of mass: 0 if x
+    /// solves the problem. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative
+    /// multipliers that minimize it. If the iterations do not suffice, the result is an upper bound.
+    fn stationarity(&self, x: &[Point], constraints: &[Constraint]) -> Vec<Vector> {
+        let Statement { masses, case, .. } = &self.statement;
+        let weights: Vec<f64> =
+            masses.iter().map(|&mass| if mass > 0.0 { 1.0 / mass } else { 0.0 }).collect();
+        let way = |v: usize| {
+            if self.statement.is_movable(v) { case.states.y[v] - x[v] } else { Vector::zeros() }
+        };
+        let active = |constraint: &&Constraint| {
+            let share = if matches!(constraint.about, About::Edge(_)) { ACTIVE[1] } else { ACTIVE[0] };
+            constraint.value <= share * constraint.length
+        };
+        let rows: Vec<_> = constraints.iter().filter(active).map(|constraint| constraint.row(x)).collect();
+        nonnegative::residual(&rows, &weights, (0..x.len()).map(way).collect(), self.iterations)
     }
 }

@@ -1,23 +1,20 @@
-//! The quality of a result x of a collision problem, measured alike for every method.
+//! The quality of a result x of a collision problem, measured alike for every method by code that shares nothing with
+//! any of them.
 //!
-//! Every result is measured with one set of rows, whatever the parameters of its method: contacts within
-//! range and edge limits, linearized at x (`rows`) under the parameters of `fast`
-//! ([`crate::case::CollisionCase::reference`]).
-//!
-//! - Distance to the reference solution: the reference is made by `fast` itself with 200 sweeps, iterated to
-//!   rest (`reference`).
-//! - Stationarity residual and violations: pairs come from the proximity search and rows from
-//!   `bowknot-constraints`, as in the backward step; the multipliers come from a solver of their own
-//!   (`nonnegative`).
-//! - Intersections: the independent judge, `bowknot::check`.
-//!
-//! So the residuals share rows with the backward step, but no solver; the reference shares all of it, and is
-//! accepted only if its residuals are small.
+//! | file | holds |
+//! |---|---|
+//! | `statement` | the problem as it is stated; pairs, distances and gradients are those of the judge |
+//! | `augmented`, `model` | a separate, slow solver of it |
+//! | `reference` | the reference solution: the best that this solver finds |
+//! | `nonnegative` | the multipliers of a result |
+//! | `evaluator` | objective, violations, stationarity residual, intersections, and the distance to the reference |
 
+mod augmented;
 mod evaluator;
+mod model;
 mod nonnegative;
 mod reference;
-mod rows;
+mod statement;
 
 pub use evaluator::{CaseEvaluator, Quality};
 pub use reference::with_reference;

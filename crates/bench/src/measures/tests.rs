@@ -1,6 +1,7 @@
 //! Measured quality against known answers.
 
-use super::reference::{at_rest, params};
+use super::augmented::project;
+use super::statement::Statement;
 use super::*;
 use crate::case::CollisionCase;
 use bowknot::geometry::{HalfSpace, Point, Vector};
@@ -76,15 +77,43 @@ fn the_reference_solution_is_the_analytic_one() {
     let start = vec![Point::new(-0.01, 0.0, 0.002), Point::new(0.01, 0.0, 0.002)];
     let target = vec![Point::new(0.008, 0.0, -0.01), Point::new(-0.004, 0.0, -0.01)];
     let case = particles(start, target, vec![1.0, 3.0]);
-    let mut resolver = case.states.resolver(case.model.clone(), params(60.0)).expect("a resolver");
-    let mut x = case.states.x.clone();
-    resolver
-        .resolve_with(&mut x, &case.states.y, &case.states.input(), &mut at_rest(&case))
-        .expect("resolved");
     let solution = [Point::new(-0.0025, 0.0, 1e-3), Point::new(-0.0005, 0.0, 1e-3)];
-    for (x, exact) in x.iter().zip(&solution) {
-        assert!((x - exact).norm() < 1e-7, "{x} is not {exact}");
+    for shares in [&[1.0][..], &[0.3, 0.6, 1.0]] {
+        let statement = Statement::new(&case).expect("a sound case");
+        let found = project(&statement, shares, 60.0).expect("solved");
+        assert!(found.converged);
+        for (x, exact) in found.x.iter().zip(&solution) {
+            assert!((x - exact).norm() < 4e-6, "{x} is not {exact}");
+        }
     }
+}
+
+/// A strand of two edges of 1 cm that may become 10 % longer. Its first vertex is held, its target is 2 m ahead: it
+/// ends straight, each edge at its limit. The last vertex is five times as heavy as the middle one.
+#[test]
+fn a_strand_is_pulled_straight() {
+    let at = |x: f64, z: f64| Point::new(x, 0.0, z);
+    let x = vec![at(0.0, 0.5), at(0.006, 0.508), at(0.012, 0.5)];
+    let states = States {
+        strands: vec![[0, 1], [1, 2]],
+        rest: x.clone(),
+        fixed: vec![true, false, false],
+        obstacle: vec![false; 3],
+        body: vec![0; 3],
+        body_contacts: vec![bowknot::twoway::BodyContact { stretch_limit: Some(1.1), ..Default::default() }],
+        y: vec![x[0], at(2.0, 0.5), at(2.0, 0.5)],
+        x,
+        masses: vec![1.0, 1.0, 5.0],
+        ..States::default()
+    };
+    let case = CollisionCase::new("strand", states).expect("a sound case");
+    let statement = Statement::new(&case).expect("a sound case");
+    let found = project(&statement, &[1.0], 60.0).expect("solved");
+    for (x, exact) in found.x.iter().zip([at(0.0, 0.5), at(0.011, 0.5), at(0.022, 0.5)]) {
+        assert!((x - exact).norm() < 2e-5, "{x} is not {exact}");
+    }
+    let solved = quality(&case, &found.x);
+    assert!(solved.stationarity < 1e-4 && solved.stretch_violation < 1e-3, "{solved:?}");
 }
 
 /// Random redundant rows: the residual is that of the dense active-set method.

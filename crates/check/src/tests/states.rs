@@ -306,3 +306,48 @@ fn bad_input_is_refused() {
         assert!(matches!(judge.check_state(&x, &options), Err(CheckError::BadCoordinate { vertex: 1, .. })));
     }
 }
+
+/// All pairs of a soup within a distance are those that are found one by one, half-spaces included.
+#[test]
+fn near_pairs_equal_all_pairs() {
+    let mut random = Random::new(9);
+    let x: Vec<Point> = (0..90).map(|_| random.point(0.3)).collect();
+    let triangles: Vec<[u32; 3]> = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let strands: Vec<[u32; 2]> = (0..10).map(|i| [60 + 2 * i, 61 + 2 * i]).collect();
+    let particles: Vec<u32> = (80..90).collect();
+    let half_spaces = [HalfSpace { normal: Vector::z(), offset: -0.25 }];
+    let judge = Judge::new(&Parts {
+        vertex_count: x.len(),
+        triangles: &triangles,
+        strands: &strands,
+        particles: &particles,
+        half_spaces: &half_spaces,
+        ..Parts::default()
+    })
+    .expect("sound parts");
+    let distance = 0.05;
+    let mut expected = Vec::new();
+    let mut add = |class, elements: [u32; 2]| {
+        let sides = judge.sides(class, elements);
+        if !sides[0].iter().any(|v| sides[1].contains(v)) && judge.measured(class, elements, &x).1 <= distance
+        {
+            expected.push((class, elements));
+        }
+    };
+    let edges = judge.edges().len() as u32;
+    (0..edges).for_each(|a| (a + 1..edges).for_each(|b| add(PairClass::EdgeEdge, [a, b])));
+    (0..90).for_each(|v| (0..20).for_each(|t| add(PairClass::VertexTriangle, [v, t])));
+    let strand_edges: Vec<u32> = (0..edges).filter(|&e| judge.edges()[e as usize][0] >= 60).collect();
+    particles.iter().for_each(|&v| strand_edges.iter().for_each(|&e| add(PairClass::VertexEdge, [v, e])));
+    (80..90).for_each(|a| (a + 1..90).for_each(|b| add(PairClass::VertexVertex, [a, b])));
+    (0..90).for_each(|v| add(PairClass::VertexHalfSpace, [v, 0]));
+    expected.sort_unstable();
+    let found = judge.pairs_within(&x, distance).expect("a sound state");
+    let listed: Vec<_> = found.iter().map(|pair| (pair.class, pair.elements)).collect();
+    assert_eq!(listed, expected);
+    for class in [PairClass::EdgeEdge, PairClass::VertexTriangle, PairClass::VertexEdge] {
+        assert!(listed.iter().any(|pair| pair.0 == class), "{class:?}");
+    }
+    assert!(found.iter().all(|pair| pair.class == PairClass::VertexHalfSpace
+        || ((pair.places[0] - pair.places[1]).norm() - pair.distance).abs() < 1e-12));
+}
