@@ -49,25 +49,23 @@ const ROUGH_MINIMIZATIONS: usize = 3;
 const DECREASE: f64 = 1e-4;
 const ROUNDING: f64 = 1e-13;
 
-/// How a solve ended.
+/// The end of a solve, after so many steps.
 #[derive(Clone, Debug)]
 pub struct Projected {
     pub x: Vec<Point>,
-    pub converged: bool,
     pub steps: usize,
 }
 
 /// Solves the problem, by way of targets at `shares` of the way from the start to the target. The last one is 1.
 pub fn project(statement: &Statement<'_>, shares: &[f64], seconds: f64) -> Result<Projected> {
     let mut solver = Solver::new(statement, Instant::now() + Duration::from_secs_f64(seconds));
-    let mut converged = false;
     for share in shares {
         let states = &statement.case.states;
         solver.aim = states.x.iter().zip(&states.y).map(|(x, y)| x + (y - x) * *share).collect();
         solver.target.clone_from(&solver.aim);
-        converged = solver.solve(if *share < 1.0 { ROUGH_MINIMIZATIONS } else { MAX_MINIMIZATIONS })?;
+        solver.solve(if *share < 1.0 { ROUGH_MINIMIZATIONS } else { MAX_MINIMIZATIONS })?;
     }
-    Ok(Projected { x: solver.x, converged, steps: solver.steps })
+    Ok(Projected { x: solver.x, steps: solver.steps })
 }
 
 struct Solver<'a> {
@@ -123,17 +121,15 @@ impl<'a> Solver<'a> {
         Ok(self.statement.constraints_of(&self.near, x, self.reach()))
     }
 
-    /// Makes at most so many minimizations for the present target. Returns whether the method converged.
-    fn solve(&mut self, minimizations: usize) -> Result<bool> {
+    /// Makes at most so many minimizations for the present target.
+    fn solve(&mut self, minimizations: usize) -> Result<()> {
         let mut before = f64::INFINITY;
         for _ in 0..minimizations {
             let tolerance = (INEXACT * before).clamp(STATIONARY, ROUGH);
             let stationary = self.minimize(tolerance)?;
             let missed = self.update_multipliers()?;
-            if stationary && tolerance == STATIONARY && missed <= MET {
-                return Ok(true);
-            }
-            if Instant::now() > self.deadline {
+            let has_converged = stationary && tolerance == STATIONARY && missed <= MET;
+            if has_converged || Instant::now() > self.deadline {
                 break;
             }
             if missed > 0.3 * before {
@@ -141,7 +137,7 @@ impl<'a> Solver<'a> {
             }
             before = missed;
         }
-        Ok(false)
+        Ok(())
     }
 
     /// Sets the multipliers; returns the largest distance from complementarity [contact distances].

