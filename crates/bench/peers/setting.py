@@ -42,12 +42,13 @@ _RAPIER = "crates/bench/peers/rapier"
 _PROGRAMS = {
     "bowknot": ("", "bowknot", "cargo build --release"),
     "peer_search": ("", "examples/peer_search", "cargo build --release -p bowknot-bench --example peer_search"),
+    "peer_forward": ("", "examples/peer_forward", "cargo build --release -p bowknot-bench --example peer_forward"),
     "rapier": (_RAPIER, "bowknot-peer-rapier", f"cargo build --release --manifest-path {_RAPIER}/Cargo.toml"),
 }
 
 
 def program(name):
-    """Path of a built program: `bowknot`, `peer_search`, or `rapier`, which is a workspace of its own."""
+    """Path of a built program: `bowknot`, an example of `bowknot-bench`, or `rapier`, which is a workspace of its own."""
     workspace, place, build = _PROGRAMS[name]
     target = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / workspace / "target"))
     path = target / "release" / place
