@@ -55,7 +55,7 @@ class Layers:
         """A scene file without other files."""
         random = np.random.default_rng(50)
         edge = SIDE / (self.side_vertices - 1)
-        lines = [f"[simulation]\nname = \"layers\"\ndt = {DT!r}\nframes = {round(self.seconds / DT)}\n"]
+        lines = [f'[simulation]\nname = "layers"\ndt = {DT!r}\nframes = {round(self.seconds / DT)}\n']
         for k in range(self.count):
             along, aside, turn = random.uniform(-1.0, 1.0, 3) * [0.02, 0.05, 5.0] + [0.0, ASIDE, 0.0]
             place = f"[{along:.4f}, {aside:.4f}, {RADIUS + GAP * (k + 1):.4f}]"
@@ -83,7 +83,7 @@ def run_bowknot(layers, preset, threads, folder):
     options = ["--out", out, "--threads", threads, "--preset", preset, "--quiet"]
     setting.call([setting.program("bowknot"), "run", scene, *options])
     cpu, wall = fall.read_steps(out / "stats.jsonl")
-    last = sorted((out / "frames").glob("*.ply"))[-1]
+    last = max((out / "frames").glob("*.ply"))
     text = setting.call([setting.program("bowknot"), "check", last, "--json"], (0, 1))
     setting.clear(out)
     return np.array(cpu), np.array(wall), json.loads(text)["intersections"]
@@ -95,7 +95,12 @@ def records_of(layers, threads, folder):
     for preset, name in (("fast", "Bowknot"), ("quick", "Bowknot, quick")):
         cpu, wall, intersections = run_bowknot(layers, preset, threads, folder)
         record = {"program": name, "steps": len(cpu), "dt": DT, "intersections": intersections}
-        record |= {"cpu_mean_s": cpu.mean(), "cpu_max_s": cpu.max(), "wall_mean_s": wall.mean(), "wall_max_s": wall.max()}
+        record |= {
+            "cpu_mean_s": cpu.mean(),
+            "cpu_max_s": cpu.max(),
+            "wall_mean_s": wall.mean(),
+            "wall_max_s": wall.max(),
+        }
         records.append(record)
         print(f"{name}: {record}", flush=True)
     for name, mean, largest in PAPER:
@@ -120,9 +125,8 @@ def section(layers, records, threads, load_before):
     ours, quick = records[:2]
     published, device = records[2:]
     per_second = {r["program"]: number(r["wall_mean_s"] / r["dt"]) for r in records}
-    clear = "The last states intersect." if ours["intersections"] or quick["intersections"] else (
-        "The last states are free of intersections."
-    )
+    bad = ours["intersections"] or quick["intersections"]
+    clear = "The last states intersect." if bad else "The last states are free of intersections."
     return results.Section(
         name=NAME,
         title="50 layers of cloth: offset geometric contact, as published",

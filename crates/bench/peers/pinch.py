@@ -113,7 +113,8 @@ def section(case, records, versions, load_before):
     def creep(name):
         held = [abs(1e3 * r["creep_m"]) for r in of(name) if r["holds"]]
         fallen = len(of(name)) - len(held)
-        text = f"{number(min(held))} to {number(max(held))} mm" if held else "no setting holds it"
+        ends = dict.fromkeys(number(creep) for creep in (min(held), max(held))) if held else ()
+        text = f"{' to '.join(ends)} mm" if held else "no setting holds it"
         return text + (f" ({fallen} of {len(of(name))} settings let it fall)" if held and fallen else "")
 
     newton = f", in Newton {creep('Newton')}" if of("Newton") else ""
@@ -126,8 +127,7 @@ def section(case, records, versions, load_before):
             cloth creep out of the grip from {SETTLED:g} s on, when it should be at rest?""",
         finding=f"""By Bowknot the held part creeps by {creep("Bowknot")}, in rapier by {creep("rapier")}{newton}.
             {f"Frames intersect in {bad}." if bad else "No frame intersects."}""",
-        caveats="""Friction at rest is regularized in different ways, and all three let go slowly rather than stick.
-            Bowknot puts bodies at rest to sleep, which ends creep; a row has that switched off. Surfaces are as thick
+        caveats="""Friction at rest is regularized in different ways. Bowknot puts bodies at rest to sleep, which ends creep; a row has that switched off. Surfaces are as thick
             as each program makes them, and pads start 1 mm away from contact in each; in Newton contacts act at
             Bowknot's distance, by a penalty; one row has it ten times as stiff and leaves out pairs within one ring only. The
             cut of motion between soft bodies is on in both. Its held vertices are led by writing their positions, as in its examples.""",

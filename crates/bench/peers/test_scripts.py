@@ -20,7 +20,9 @@ def write_ply(path, x, faces):
     vertices["x"][:count] = x
     vertices["obstacle"][count:] = 1
     vertices["body"][count:] = 1
-    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {count + 4}\nelement face {len(faces) + 1}\nend_header\n"
+    header = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {count + 4}\nelement face {len(faces) + 1}\nend_header\n"
+    )
     data = b"".join(b"\x03" + np.array(face, "<i4").tobytes() for face in faces)
     quad = b"\x04" + np.arange(count, count + 4, dtype="<i4").tobytes()
     path.write_bytes(header.encode() + vertices.tobytes() + data + quad)

@@ -107,7 +107,7 @@ fn all_steps(root: &Path) -> Vec<Step> {
         steps.push(Step { run: wheel::test, ..Step::new("python", wheel::tests(root, &target)) });
     } else {
         println!(
-            "==> read exports, tests/peers, crates/bench/peers, wheel, python: skipped, because Python 3.11 with venv is missing: apt-get install \
+            "==> read exports, peers, wheel, python: skipped, because Python 3.11 with venv is missing: apt-get install \
              python3-venv"
         );
     }
