@@ -74,7 +74,8 @@ fn main() -> Result<()> {
             cpu: 0.0,
             wall: 0.0,
         };
-        while report.remaining.len() <= arguments.max_steps && report.largest_remaining > arguments.tolerance {
+        while report.remaining.len() <= arguments.max_steps && report.largest_remaining > arguments.tolerance
+        {
             let step = forward.advance(&states.y)?;
             report.remaining.push(distance(&forward));
             report.largest_remaining = step.remaining;
