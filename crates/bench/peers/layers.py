@@ -144,7 +144,8 @@ def section(layers, records, threads, load_before):
             machines, and what is averaged: the paper's times are over its whole animation, with the pile on the
             ground, these over the time that is named. The paper does not say how large and how far apart the sheets
             are: these are 1 m wide, {1e3 * GAP:g} mm apart, of cotton, 0.5 % fewer vertices. Its table gives 1M vertices
-            and 1.96M primitives for the scene, the project's page 246K vertices and 475K triangles, with the same times. The paper's program was not run.""",
+            and 1.96M primitives for the scene, the project's page 246K vertices and 475K triangles, with the same
+            times. The paper's program was not run.""",
         tables=[table(layers, records)],
         conditions=measure.conditions({"offset geometric contact": "as published"}, f"{threads} threads", load_before),
     )
