@@ -13,7 +13,7 @@ from pathlib import Path
 import results
 import setting
 
-NAMES = ["proximity", "projection", "cloth"]
+NAMES = ["proximity", "projection", "planar", "cloth", "soft", "pinch", "layers"]
 
 
 def compare(name, options):

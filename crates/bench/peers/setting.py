@@ -37,20 +37,25 @@ def peer(name):
         ) from error
 
 
-_BUILD = {
-    "bowknot": "cargo build --release",
-    "peer_search": "cargo build --release -p bowknot-bench --example peer_search",
+_RAPIER = "crates/bench/peers/rapier"
+# Where a program's target folder is, its path in there, and how it is built.
+_PROGRAMS = {
+    "bowknot": ("", "bowknot", "cargo build --release"),
+    "peer_search": ("", "examples/peer_search", "cargo build --release -p bowknot-bench --example peer_search"),
+    "peer_forward": ("", "examples/peer_forward", "cargo build --release -p bowknot-bench --example peer_forward"),
+    "rapier": (_RAPIER, "bowknot-peer-rapier", f"cargo build --release --manifest-path {_RAPIER}/Cargo.toml"),
 }
 
 
 def program(name):
-    """Path of a built program of this workspace: `bowknot` or `peer_search`."""
-    target = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
-    path = target / "release" / ("" if name == "bowknot" else "examples") / name
+    """Path of a built program: `bowknot`, an example of `bowknot-bench`, or `rapier`, which is a workspace of its own."""
+    workspace, place, build = _PROGRAMS[name]
+    target = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / workspace / "target"))
+    path = target / "release" / place
     for candidate in (path, path.with_suffix(".exe")):
         if candidate.exists():
             return candidate
-    raise Unusable(f"{path} is not there: {_BUILD[name]}")
+    raise Unusable(f"{path} is not there: {build}")
 
 
 def call(command, accept=(0,)):

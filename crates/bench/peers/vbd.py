@@ -2,7 +2,7 @@
 
 import io
 from contextlib import redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,18 +20,29 @@ class Settings:
     name: str
     substeps: int
     iterations: int
+    # Contacts of the sheet with itself, and with them the cut of its motion at planes between its parts.
+    self_contact: bool = True
     # Whether motion is cut at planes against the obstacle too; Newton's default is not to.
     cut_at_obstacle: bool = False
     # How much farther than the margin pairs are searched [m]; a part of it bounds a step.
     gap: float = GAP
     # Number of pairs that a vertex can hold; an edge can hold twice as many. More are dropped silently.
     buffer: int = 64
+    # Pairs within so many rings of each other are left out.
+    rings: int = 2
+    # Pairs are searched anew before each iteration, not twice per step.
+    search_each: bool = False
 
 
+# Without any switch: what the constructor of the solver chooses.
+BARE = Settings("Newton, constructor's defaults: no self-contact", 10, 10, self_contact=False)
+# The switches of its cloth examples.
 PLAIN = Settings("Newton, 1 step of 10 iterations", 1, 10)
 FINE = Settings("Newton, 10 steps of 4", 10, 4)
-CUT = Settings("Newton, 10 steps of 4, cut at obstacles", 10, 4, True)
-WIDE = Settings("Newton, 10 steps of 4, cut, pairs to 12 mm", 10, 4, True, 0.01, 512)
+CUT = Settings("Newton, 10 steps of 4, cut at obstacles", 10, 4, cut_at_obstacle=True)
+WIDE = replace(CUT, name="Newton, 10 steps of 4, cut, pairs to 12 mm", gap=0.01, buffer=512)
+# All that its documentation names against tunneling.
+ALL = replace(WIDE, name="Newton, 10 steps of 4, all switches", rings=1, search_each=True)
 
 
 def run(scene, settings, frames):
@@ -99,14 +110,19 @@ def _solver(newton, model, settings):
         enable_rigid_soft_full_surface_contact=True,
         contact_matching="latest",
     )
+    base = newton.solvers.SolverBase
+    slots = [base.CollisionSlot.RIGID, base.CollisionSlot.SOFT_SELF_CONTACT] if settings.search_each else []
     return newton.solvers.SolverVBD(
         model,
         iterations=settings.iterations,
-        particle_enable_self_contact=True,
+        particle_enable_self_contact=settings.self_contact,
         particle_self_contact_margin=MARGIN,
         particle_self_contact_gap=settings.gap,
         particle_vertex_contact_buffer_size=settings.buffer,
         particle_edge_contact_buffer_size=2 * settings.buffer,
+        particle_topological_contact_filter_threshold=settings.rings,
         rigid_soft_enable_dat=settings.cut_at_obstacle,
         collision_pipeline=pipeline,
+        collision_frequency=dict.fromkeys(slots, 1),
+        collision_frequency_type=dict.fromkeys(slots, base.CollisionFrequencyType.ITERATIONS),
     )

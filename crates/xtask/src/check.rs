@@ -100,7 +100,9 @@ fn all_steps(root: &Path) -> Vec<Step> {
         steps.push(Step { run: run_afresh, ..Step::new("export", readers::export(&target)) });
         let read = readers::read(root, &target);
         steps.push(Step { run: readers::run, ..Step::new("read exports", read) });
-        steps.push(Step::new("peers", peers::tests(root, &target)));
+        for folder in ["tests/peers", "crates/bench/peers"] {
+            steps.push(Step::new(folder, peers::tests(root, &target, folder)));
+        }
         steps.push(Step { run: wheel::build, ..Step::new("wheel", wheel::command(root, &target)) });
         steps.push(Step { run: wheel::test, ..Step::new("python", wheel::tests(root, &target)) });
     } else {

@@ -31,9 +31,10 @@ fn simulate_and_judge(root: &Path, target: &Path, options: &[&str]) -> Result<bo
     Ok(python.status()?.success())
 }
 
-/// The tests of what the scripts do without the solvers, in the environment of the readers, which has NumPy.
-pub fn tests(root: &Path, target: &Path) -> Command {
+/// The tests of what the scripts in `folder` do without the solvers, in the environment of the readers, which has
+/// NumPy.
+pub fn tests(root: &Path, target: &Path, folder: &str) -> Command {
     let mut command = Command::new(venv::python(&target.join("xtask/readers")));
-    command.args(["-m", "unittest", "--quiet", "test_peers"]).current_dir(root.join("tests/peers"));
+    command.args(["-m", "unittest", "discover", "--quiet"]).current_dir(root.join(folder));
     command
 }
