@@ -100,19 +100,29 @@ def ensure_clean():
         )
 
 
-def publish(folders):
-    """Puts the results that full runs left in `folders` between the markers of the page."""
+def publish(folders, names):
+    """Puts the results that full runs left in `folders`, by name, between the markers of the page. Other comparisons of
+    `names`, which is their order, stay as they are there."""
     ensure_clean()
-    sections = [(folder / "section.md").read_text(encoding="utf-8") for folder in folders]
-    text = "\n".join([f"## Peers\n\n{_wrap(HEADING)}\n", *sections])
     page = PAGE.read_text(encoding="utf-8")
     start, end = page.find(BEGIN), page.find(END)
     if not 0 <= start < end:
         raise Unusable(f"{PAGE} lacks the lines {BEGIN.strip()} and {END.strip()}")
+    sections = sections_of(page[start + len(BEGIN) : end], names)
+    for name, folder in folders.items():
+        sections[name] = (folder / "section.md").read_text(encoding="utf-8")
+    ordered = [sections[name] for name in names if name in sections]
+    text = "\n".join([f"## Peers\n\n{_wrap(HEADING)}\n", *ordered])
     PAGE.write_text(page[: start + len(BEGIN)] + text + page[end:], encoding="utf-8")
-    for folder in folders:
+    for folder in folders.values():
         for table in folder.glob("peers-*.csv"):
             shutil.copyfile(table, TABLES / table.name)
+
+
+def sections_of(block, names):
+    """The sections of a block, by the name of the script that each of them names."""
+    parts = [f"### {part.rstrip()}\n" for part in block.split("\n### ")[1:]]
+    return {name: part for part in parts for name in names if f"crates/bench/peers/{name}.py" in part}
 
 
 def _wrap(text):

@@ -10,6 +10,7 @@ import numpy as np
 
 import frames
 import layers
+import results
 import soft
 
 
@@ -26,6 +27,14 @@ def write_ply(path, x, faces):
     data = b"".join(b"\x03" + np.array(face, "<i4").tobytes() for face in faces)
     quad = b"\x04" + np.arange(count, count + 4, dtype="<i4").tobytes()
     path.write_bytes(header.encode() + vertices.tobytes() + data + quad)
+
+
+class Page(unittest.TestCase):
+    def test_sections_that_were_not_measured_stay(self):
+        first = "### One\n\nText.\n\n`python crates/bench/peers/one.py`. Commit 1.\n"
+        second = "### Two\n\n#### Part\n\n`python crates/bench/peers/two.py`. Commit 2.\n"
+        block = "\n".join(["## Peers\n\nHeading.\n", second, first])
+        self.assertEqual(results.sections_of(block, ["one", "two"]), {"one": first, "two": second})
 
 
 class Frames(unittest.TestCase):
