@@ -53,6 +53,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let newton = by_newton(collision_scene(paper())?, barrier.clone(), travel)?;
     methods.push(Box::new(Composed::new("log barrier, Newton", newton)));
+    let ipc = by_newton(collision_scene(paper())?, BarrierParams::ipc(), travel)?;
+    methods.push(Box::new(Composed::new("IPC", ipc)));
     let edges = BarrierParams { edge_stiffness: 1000.0, ..barrier };
     let newton = by_newton(collision_scene(paper())?, edges, travel)?;
     methods.push(Box::new(Composed::new("the same, edges by penalty", newton)));

@@ -33,7 +33,16 @@ pub const METHODS: &[Entry] = &[
     Entry { name: "quick", params: Params::quick, build: two_way },
     Entry { name: "paper", params: Params::paper, build: two_way },
     Entry { name: "log barrier", params: Params::paper, build: |p| log_barrier(p, BarrierParams::default()) },
-    Entry { name: "log barrier, Newton", params: Params::paper, build: newton_barrier },
+    Entry { name: "log barrier, Newton", params: Params::paper, build: |p| newton(p, BarrierParams::default()) },
+    Entry { name: "IPC", params: Params::paper, build: |p| ipc(p, BarrierParams::ipc()) },
+    Entry {
+        name: "IPC, own range",
+        params: Params::paper,
+        build: |p| {
+            let params = BarrierParams::ipc_with_own_range(&p);
+            ipc(p, params)
+        },
+    },
     Entry { name: "Harmon 2008", params: without_edges, build: |p| rows(p, LinearSystem::default()) },
     Entry { name: "Harmon, projected", params: without_edges, build: |p| rows(p, LinearSystem::projected()) },
     Entry { name: "Tang 2018, 20", params: Params::paper, build: |p| rows(p, AugmentedLagrangian::new(20)) },
@@ -172,9 +181,12 @@ pub fn log_barrier(scene: CollisionScene, params: BarrierParams) -> Built {
     composed(by_descent(scene, params)?)
 }
 
-/// Eq. 7-8 by projected Newton steps, with CCD and a line search as in IPC (Li et al. 2020).
-fn newton_barrier(scene: CollisionScene) -> Built {
-    composed(by_newton(scene, BarrierParams::default(), AdditiveCcd::default())?)
+/// Incremental potential contact (Li et al. 2020).
+pub fn ipc(scene: CollisionScene, params: BarrierParams) -> Built {
+    composed(by_newton(scene, params, AdditiveCcd::default())?)
+}
+fn newton(scene: CollisionScene, params: BarrierParams) -> Built {
+    composed(by_newton(scene, params, AdditiveCcd::default())?)
 }
 
 /// The two-way method with another row solver.

@@ -1,9 +1,8 @@
 //! One step size for all vertices: at most that of the earliest impact, then halved until the energy does not
 //! rise (Li et al. 2020, Algorithm 1).
 
-use super::{BarrierParams, Objective};
+use super::Objective;
 use crate::ccd::{AdditiveCcd, PathSearch, PathTime, earliest};
-use bowknot_errors::{Errors, ParamError};
 use bowknot_twoway::geometry::{Point, Vector};
 use bowknot_twoway::stepper::{StepReport, Stepper};
 use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
@@ -27,16 +26,9 @@ pub struct LineSearch {
 }
 
 impl LineSearch {
-    /// A line search on the same objective as the backward step's.
-    ///
-    /// # Errors
-    /// Parameters out of their range.
-    pub fn new(
-        scene: &CollisionScene,
-        params: BarrierParams,
-        ccd: AdditiveCcd,
-    ) -> Result<Self, Errors<ParamError>> {
-        Ok(Self { objective: Objective::new(scene, params)?, ccd, ..Self::default() })
+    /// A line search on the backward step's objective.
+    pub fn new(objective: &Objective, ccd: AdditiveCcd) -> Self {
+        Self { objective: objective.sharing(), ccd, ..Self::default() }
     }
 
     /// The largest of `step`, half of it, .. that does not raise the energy; 0 after too many halvings.

@@ -14,11 +14,13 @@ use anyhow::Result;
 pub struct ContactsAlone;
 
 /// `fast`, the paper's method, and all methods without edge limits.
-const METHODS: [&str; 9] = [
+const METHODS: [&str; 11] = [
     "fast",
     "paper",
     "log barrier",
     "log barrier, Newton",
+    "IPC",
+    "IPC, own range",
     "Harmon, projected",
     "impact zones",
     "impact zones, 0.8 delta",
