@@ -2,10 +2,10 @@
 //! rise (Li et al. 2020, Algorithm 1).
 
 use super::Objective;
-use crate::ccd::{AdditiveCcd, PathSearch, PathTime, earliest};
+use crate::ccd::{AdditiveCcd, PathTime, SweptSearch, earliest};
 use bowknot_twoway::geometry::{Point, Vector};
 use bowknot_twoway::stepper::{StepReport, Stepper};
-use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
+use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Statistics};
 
 /// Largest number of halvings; then nothing moves.
 const MAX_HALVINGS: usize = 40;
@@ -21,7 +21,6 @@ pub struct LineSearch {
     objective: Objective,
     ccd: AdditiveCcd,
     stepper: Stepper,
-    search: PathSearch,
     paths: Vec<Vector>,
 }
 
@@ -50,7 +49,7 @@ impl LineSearch {
     }
 }
 
-impl<S: Search> ForwardStep<S> for LineSearch {
+impl ForwardStep<SweptSearch> for LineSearch {
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.objective.begin(scene, state);
         self.stepper.begin(scene.rest().len());
@@ -60,15 +59,13 @@ impl<S: Search> ForwardStep<S> for LineSearch {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut S,
+        search: &mut SweptSearch,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        let range = self.objective.largest_range(scene);
-        self.search.nearest = range;
-        self.search.list(scene, state, search, &self.paths, PathTime::Common, statistics);
+        search.list(scene, state, &self.paths, PathTime::Common, statistics);
         let mut step = earliest(&self.ccd, scene, state, &self.paths);
         let still = |v: usize| state.is_movable(v) || self.paths[v] == Vector::zeros();
         if (0..self.paths.len()).all(still) {

@@ -7,7 +7,6 @@
 
 mod cholesky;
 mod descent;
-mod element;
 mod function;
 mod hessian;
 mod line_search;

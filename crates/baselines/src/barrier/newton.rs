@@ -12,10 +12,10 @@ use super::params::diagonal;
 use super::stiffness::AdaptiveStiffness;
 use super::system::System;
 use super::{BarrierForm, BarrierParams, Contact, Derivatives, LineSearch, LinearSolver, Objective};
-use crate::ccd::AdditiveCcd;
+use crate::ccd::{AdditiveCcd, SweptSearch};
 use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_twoway::geometry::{Point, Vector};
-use bowknot_twoway::{BackwardStep, CollisionScene, ResolveState, Resolver, Statistics, TrustRegionSearch};
+use bowknot_twoway::{BackwardStep, CollisionScene, ResolveState, Resolver, Statistics};
 
 /// First inertia that an indefinite system gets, over its largest entry.
 const SMALLEST_SHIFT: f64 = 1e-15;
@@ -44,11 +44,11 @@ pub fn by_newton(
     scene: CollisionScene,
     params: BarrierParams,
     ccd: AdditiveCcd,
-) -> Result<Resolver<TrustRegionSearch, NewtonStep, LineSearch>, Errors<ParamError>> {
+) -> Result<Resolver<SweptSearch, NewtonStep, LineSearch>, Errors<ParamError>> {
     ccd.validate()?;
     let step = NewtonStep::new(&scene, params)?;
     let line_search = LineSearch::new(&step.objective, ccd);
-    let search = TrustRegionSearch::new(&scene);
+    let search = SweptSearch::new(&scene);
     Ok(Resolver::with_stages(scene, search, step, line_search))
 }
 

@@ -9,7 +9,8 @@
 
 use super::function::{Jet, barrier, squared_barrier};
 use super::mollifier::{self, Mollifier};
-use super::{BarrierForm, BarrierParams, element};
+use super::{BarrierForm, BarrierParams};
+use crate::geometry;
 use bowknot_errors::{Errors, ParamError};
 use bowknot_twoway::constraints::EdgeLimits;
 use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector};
@@ -129,7 +130,7 @@ impl Objective {
         let half_spaces = scene.model().half_spaces();
         self.gather(scene, state, x, |kind, p| {
             let pair = &state.contacts.pairs.pairs()[p];
-            element::separation(kind, &pair.vertices, pair.elements[1], x, half_spaces)
+            geometry::separation(kind, &pair.vertices, pair.elements[1], x, half_spaces)
         })
     }
 

@@ -1,13 +1,14 @@
 //! Against differences of gradients, feature by feature.
 
 use super::*;
-use crate::barrier::{barrier, element};
+use crate::barrier::barrier;
+use crate::geometry;
 
 const STRENGTH: f64 = 20.0;
 const RANGE: f64 = 0.5;
 
 fn contact(kind: PairKind, x: &[Point; 4]) -> Contact {
-    let separation = element::separation(kind, &[0, 1, 2, 3], 0, x, &[]);
+    let separation = geometry::separation(kind, &[0, 1, 2, 3], 0, x, &[]);
     let jet = barrier(STRENGTH, separation.distance, RANGE);
     Contact { kind, vertices: [0, 1, 2, 3], separation, jet, mollifier: Mollifier::NONE }
 }
