@@ -17,7 +17,7 @@ pub struct ZoneParams {
     /// 200.
     pub max_sweeps: u32,
     /// Gauss-Seidel stops when a sweep changes no row by more than this, and conjugate gradients when no row is
-    /// off by more, in mean edge lengths. Default 0.001.
+    /// off by more, in mean edge lengths. Default 0.01.
     pub tolerance: f64,
     /// A pair that does not meet, but ends at less than this share of its contact distance, gets a row too.
     /// Default 0, as published: zones prevent intersections and keep no distance. With 0.8 they solve the
@@ -57,7 +57,7 @@ impl Default for ZoneParams {
             solver: ZoneSolver::GaussSeidel,
             goal: ZoneGoal::Distance,
             max_sweeps: 200,
-            tolerance: 0.001,
+            tolerance: 0.01,
             thickness: 0.0,
         }
     }
