@@ -1,10 +1,10 @@
 //! Sparse Cholesky factorization of a [`System`]: multifrontal, over 3x3 blocks, ordered by nested dissection.
 //!
-//! Vertices are split in two halves along the longest axis of their bounding box, again and again (George 1973). Those of
-//! one half with a neighbor in the other one are the separator, which is eliminated after both. Each separator
-//! and each small rest is one dense front (Duff and Reid 1983): its rows are factored, and what remains of the
-//! rows that are eliminated later is added to the front above. Almost all operations are products of dense
-//! matrices. It runs on one thread, and results do not depend on the number of threads.
+//! Vertices are split in two halves along the longest axis of their bounding box, again and again (George
+//! 1973). Those of one half with a neighbor in the other one are the separator, which is eliminated after
+//! both. Each separator and each small rest is one dense front (Duff and Reid 1983): its rows are factored,
+//! and what remains of the rows that are eliminated later is added to the front above. Almost all operations
+//! are products of dense matrices. It runs on one thread, and results do not depend on the number of threads.
 
 use super::system::System;
 use bowknot_twoway::geometry::{Point, Vector};
@@ -159,7 +159,8 @@ impl Factorization<'_> {
         let high = vertices.split_off(vertices.len() / 2);
         vertices.iter().for_each(|&v| self.side[v as usize] = Side::Low);
         high.iter().for_each(|&v| self.side[v as usize] = Side::High);
-        let meets = |v: u32, side: Side| self.system.columns(v).iter().any(|&c| self.side[c as usize] == side);
+        let meets =
+            |v: u32, side: Side| self.system.columns(v).iter().any(|&c| self.side[c as usize] == side);
         let of_low: Vec<u32> = vertices.iter().copied().filter(|&v| meets(v, Side::High)).collect();
         let of_high: Vec<u32> = high.iter().copied().filter(|&v| meets(v, Side::Low)).collect();
         let separator = if of_low.len() <= of_high.len() { of_low } else { of_high };

@@ -14,7 +14,8 @@ pub struct Jet {
     pub curvature: f64,
 }
 
-/// Eq. 8 of the paper: B(s) = -k (s - r)^2 ln(s/r) for a gap s [m] below the range r [m], 0 above; k is the strength [kg/s^2].
+/// Eq. 8 of the paper: B(s) = -k (s - r)^2 ln(s/r) for a gap s [m] below the range r [m], 0 above; k is the
+/// strength [kg/s^2].
 ///
 /// With u = s/r: B = -k r^2 (u-1)^2 ln u, B' = -k r (u-1) [2 ln u + (u-1)/u], B'' = -k [2 ln u + 4 (u-1)/u -
 /// ((u-1)/u)^2]. It is convex: ln u and (u-1)/u are negative below the range, so every term of B'' is at
@@ -32,9 +33,9 @@ pub fn barrier(strength: f64, gap: f64, range: f64) -> Jet {
     }
 }
 
-/// The barrier of IPC (Li et al. 2020): B(d) = -k (D - R)^2 ln(D/R) with D = d^2 - xi^2 and R = r^2 - xi^2, for a
-/// distance d and a range r that both include the minimum separation xi [m] (Li et al. 2021); k in kg/(m^2 s^2).
-/// It is [`barrier`] of D, derived by d.
+/// The barrier of IPC (Li et al. 2020): B(d) = -k (D - R)^2 ln(D/R) with D = d^2 - xi^2 and R = r^2 - xi^2,
+/// for a distance d and a range r that both include the minimum separation xi [m] (Li et al. 2021); k in
+/// kg/(m^2 s^2). It is [`barrier`] of D, derived by d.
 pub fn squared_barrier(stiffness: f64, distance: f64, range: f64, min_separation: f64) -> Jet {
     let thickness = min_separation * min_separation;
     let of_square = barrier(stiffness, distance * distance - thickness, range * range - thickness);

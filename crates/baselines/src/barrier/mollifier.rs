@@ -1,4 +1,4 @@
-//! The factor by which the barrier between two edges fades as they become parallel (Li et al. 2020, section 5.2), where
+//! The factor by which the barrier between two edges fades as they become parallel (Li et al. 2020), where
 //! the distance has no gradient.
 
 use super::hessian::Block12;

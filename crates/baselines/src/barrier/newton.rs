@@ -162,8 +162,8 @@ impl BackwardStep for NewtonStep {
     }
 }
 
-/// Solves the system in place. Where rounding makes it indefinite, because the barrier is stiffer than the inertia by
-/// more digits than there are, it gets more inertia: the step is shorter, and still descends.
+/// Solves the system in place. Where rounding makes it indefinite, because the barrier is stiffer than the
+/// inertia by more digits than there are, it gets more inertia: the step is shorter, and still descends.
 fn factor_and_solve(system: &System, positions: &[Point], step: &mut [Vector]) {
     let mut inertia = 0.0;
     for _ in 0..MAX_SHIFTS {

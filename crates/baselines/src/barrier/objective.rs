@@ -3,9 +3,10 @@
 //! E(x) = sum 1/2 m/dt^2 |x - y0|^2 + sum m_p(x) B(d_p(x) - xi_p) + sum 1/2 k_e max(|e| - L, 0)^2  [J]
 //!
 //! over the vertices that are not prescribed, the pairs nearer than the barrier's range and the edges beyond
-//! their limit. m_p is the [`Mollifier`] of IPC, and 1 with Eq. 8. Gaps are measured from the minimum separation xi_p that the forward step keeps, as in
-//! Codim-IPC with thickness (Li et al. 2021). Otherwise a pair could reach its minimum separation, and the
-//! forward step instead of the barrier would hold it. Without minimum separations this is Eq. 8.
+//! their limit. m_p is the [`Mollifier`] of IPC, and 1 with Eq. 8. Gaps are measured from the minimum
+//! separation xi_p that the forward step keeps, as in Codim-IPC with thickness (Li et al. 2021). Otherwise a
+//! pair could reach its minimum separation, and the forward step instead of the barrier would hold it.
+//! Without minimum separations this is Eq. 8.
 
 use super::function::{Jet, barrier, squared_barrier};
 use super::mollifier::{self, Mollifier};

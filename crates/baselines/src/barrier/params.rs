@@ -81,7 +81,16 @@ impl Default for BarrierParams {
 
 impl Parameters for BarrierParams {
     fn check(&self, checks: &mut Checks) {
-        let Self { form: _, strength, range, time_step, edge_stiffness, scaling: _, linear_solver: _, tolerance } = self;
+        let Self {
+            form: _,
+            strength,
+            range,
+            time_step,
+            edge_stiffness,
+            scaling: _,
+            linear_solver: _,
+            tolerance,
+        } = self;
         checks.positive("strength", *strength);
         if let Some(range) = range {
             checks.positive("range", *range);

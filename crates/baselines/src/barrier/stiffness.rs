@@ -1,4 +1,4 @@
-//! The stiffness of the barrier of IPC and how it adapts (Li et al. 2020, section 5.3 and its supplement).
+//! The stiffness of the barrier of IPC and how it adapts (Li et al. 2020 and its supplement).
 
 use super::function::barrier;
 use bowknot_twoway::geometry::Vector;

@@ -20,9 +20,9 @@ pub(crate) enum PathTime {
     PerVertex,
 }
 
-/// A [`Search`] along paths. Before the first step it searches at x. Each forward step then lists the pairs that may
-/// meet on its paths, in tubes as wide as the contact range: wherever the vertices end, these are all pairs in range
-/// there too, and the next update only computes their geometry anew.
+/// A [`Search`] along paths. Before the first step it searches at x. Each forward step then lists the pairs
+/// that may meet on its paths, in tubes as wide as the contact range: wherever the vertices end, these are
+/// all pairs in range there too, and the next update only computes their geometry anew.
 #[derive(Debug)]
 pub struct SweptSearch {
     search: ProximitySearch,

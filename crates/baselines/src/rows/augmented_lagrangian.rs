@@ -14,8 +14,8 @@ use rayon::prelude::*;
 ///
 /// L(y, lambda) = 1/2 sum m |y - y'|^2 + 1/(2 rho) sum (max(0, lambda - rho s)^2 - lambda^2),
 ///
-/// y moves along -grad L, and after each step, or every few, lambda <- max(0, lambda - rho s). How long the steps are
-/// says [`Descent`]. Distance limits have the vector form: f <- rho (z - projection of z onto the
+/// y moves along -grad L, and after each step, or every few, lambda <- max(0, lambda - rho s). How long the
+/// steps are says [`Descent`]. Distance limits have the vector form: f <- rho (z - projection of z onto the
 /// ball), z = y_a - y_b + f/rho. y starts at that of the last two-way step, as the paper says below Eq. 9.
 /// Friction rows get no force.
 #[derive(Clone, Debug)]

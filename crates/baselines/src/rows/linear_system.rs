@@ -64,9 +64,8 @@ pub(crate) fn solve_equations(
     let movable = |row: &Row| row.inverse_diagonal > 0.0;
     let mut residual: Vec<f64> =
         rows.iter().map(|row| if movable(row) { -row.value(state.y) } else { 0.0 }).collect();
-    let precondition = |r: &[f64]| -> Vec<f64> {
-        r.iter().zip(rows).map(|(r, row)| r * row.inverse_diagonal).collect()
-    };
+    let precondition =
+        |r: &[f64]| -> Vec<f64> { r.iter().zip(rows).map(|(r, row)| r * row.inverse_diagonal).collect() };
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut scaled = precondition(&residual);
     let mut direction = scaled.clone();

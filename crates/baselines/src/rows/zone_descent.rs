@@ -1,8 +1,8 @@
 //! The gradient descent of I-Cloth (Tang et al. 2018): one step length per zone, by backtracking.
 //!
-//! A zone is a set of vertices that rows connect. Its first length is a thousandth of its number of vertices. A step tries
-//! the last length over 0.7, and multiplies it by 0.7 until the function falls by half of what its gradient
-//! promises. The constants are those of XRTailor, an open implementation of the method.
+//! A zone is a set of vertices that rows connect. Its first length is a thousandth of its number of vertices.
+//! A step tries the last length over 0.7, and multiplies it by 0.7 until the function falls by half of what
+//! its gradient promises. The constants are those of XRTailor, an open implementation of the method.
 
 use bowknot_twoway::geometry::{UnionFind, Vector};
 use bowknot_twoway::lcp::LcpProblem;

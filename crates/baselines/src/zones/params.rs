@@ -13,8 +13,8 @@ pub struct ZoneParams {
     pub solver: ZoneSolver,
     /// What the rows ask for. Default the contact distance.
     pub goal: ZoneGoal,
-    /// Largest number of sweeps, gradient steps or iterations of conjugate gradients of one optimization. Default
-    /// 200.
+    /// Largest number of sweeps, gradient steps or iterations of conjugate gradients of one optimization.
+    /// Default 200.
     pub max_sweeps: u32,
     /// Gauss-Seidel stops when a sweep changes no row by more than this, and conjugate gradients when no row is
     /// off by more, in mean edge lengths. Default 0.01.
@@ -32,8 +32,9 @@ pub struct ZoneParams {
 pub enum ZoneSolver {
     /// Projected Gauss-Seidel, which fails least of the three.
     GaussSeidel,
-    /// The linear system of all rows as equations, as in Harmon et al. 2008: a pair that has met once sticks for
-    /// the rest of the call. Conjugate gradients solve it for zero velocities, Gauss-Seidel for distances.
+    /// The linear system of all rows as equations, as in Harmon et al. 2008: a pair that has met once sticks
+    /// for the rest of the call. Conjugate gradients solve it for zero velocities, Gauss-Seidel for
+    /// distances.
     LinearSystem,
     /// The augmented Lagrangian of Tang et al. 2018.
     AugmentedLagrangian,

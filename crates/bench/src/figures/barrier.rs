@@ -101,7 +101,11 @@ impl Figure for Barrier {
                 ratios(&compared, ("IPC", change), ("IPC", ""), |s, _| s.cpu),
                 ratios(&compared, ("IPC", change), ("IPC", ""), |s, _| s.steps),
             ];
-            format!("{} the CPU time and {} the steps", times(geometric_mean(&cpu)), times(geometric_mean(&steps)))
+            format!(
+                "{} the CPU time and {} the steps",
+                times(geometric_mean(&cpu)),
+                times(geometric_mean(&steps))
+            )
         };
         Ok(Report {
             finding: format!(

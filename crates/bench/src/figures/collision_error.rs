@@ -195,8 +195,7 @@ pub fn finding(compared: &[Compared]) -> String {
         let [cpu, error] = over_fast(compared, method)?;
         Some(format!("{method} {} and {}", times(cpu), times(error)))
     };
-    let others: Vec<String> =
-        ["paper", "log barrier", "IPC"].into_iter().filter_map(shown).collect();
+    let others: Vec<String> = ["paper", "log barrier", "IPC"].into_iter().filter_map(shown).collect();
     let faster: Vec<String> = METHODS
         .iter()
         .filter(|entry| over_fast(compared, entry.name).is_some_and(|[cpu, _]| cpu < 1.0))

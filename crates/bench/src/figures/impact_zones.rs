@@ -76,7 +76,11 @@ impl Figure for ImpactZones {
         let hard_phases = phases.map(|(setting, soft_rounds)| {
             let solved = || compared.iter().flat_map(|c| c.solved.iter().map(|row| &row[setting]));
             let hard = solved().filter(|solved| solved.steps > soft_rounds).count();
-            format!("{hard} of {} after {}", solved().count(), counted(soft_rounds, "soft round", "soft rounds"))
+            format!(
+                "{hard} of {} after {}",
+                solved().count(),
+                counted(soft_rounds, "soft round", "soft rounds")
+            )
         });
         let failed = |method: &str, keep: &dyn Fn(&str) -> bool| {
             let group = compared.iter().filter(|c: &&Compared| keep(c.scene));

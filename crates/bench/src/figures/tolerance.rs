@@ -46,7 +46,9 @@ impl Figure for Tolerance {
         }
         let compared = contacts_alone::compared(bench, Targets::Unaware, &settings)?;
         let over_scenes = |method: &str, tau: f64, value: &dyn Fn(&Summary, bool) -> f64| {
-            let of = compared.iter().filter_map(|c| Some(value(c.find(method, &change(tau))?, c.has_references())));
+            let of = compared
+                .iter()
+                .filter_map(|c| Some(value(c.find(method, &change(tau))?, c.has_references())));
             let values: Vec<f64> = of.filter(|value| *value > 0.0).collect();
             (!values.is_empty()).then(|| geometric_mean(&values))
         };
@@ -57,7 +59,8 @@ impl Figure for Tolerance {
             series: METHODS
                 .iter()
                 .map(|method| {
-                    let points = TOLERANCES.iter().filter_map(|&tau| Some((tau, over_scenes(method, tau, value)?)));
+                    let points =
+                        TOLERANCES.iter().filter_map(|&tau| Some((tau, over_scenes(method, tau, value)?)));
                     Series::new(*method, Style::Line, points)
                 })
                 .collect(),
@@ -81,7 +84,9 @@ impl Figure for Tolerance {
             "methods that stop at the same tolerances, contacts alone: time, error, steps",
             table(&compared, |_| true),
         )];
-        parts.extend(charts.map(|(word, chart)| Part::Chart { name: format!("{}-{word}", self.name()), chart }));
+        parts.extend(
+            charts.map(|(word, chart)| Part::Chart { name: format!("{}-{word}", self.name()), chart }),
+        );
         Ok(Report {
             finding: format!(
                 "CPU time and error as multiples of those of `fast` with the same tau, geometric means over \
@@ -105,9 +110,8 @@ fn at(method: &'static str, tau: f64) -> Result<Setting> {
         "log barrier" => setting.built(change, move |scene| {
             log_barrier(scene, BarrierParams { tolerance: tau, ..BarrierParams::default() })
         }),
-        "IPC" => {
-            setting.built(change, move |scene| ipc(scene, BarrierParams { tolerance: tau, ..BarrierParams::ipc() }))
-        }
+        "IPC" => setting
+            .built(change, move |scene| ipc(scene, BarrierParams { tolerance: tau, ..BarrierParams::ipc() })),
         "impact zones, 0.8 delta" => setting.built(change, move |scene| {
             impact_zones(scene, ZoneParams { thickness: 0.8, tolerance: tau, ..ZoneParams::default() })
         }),

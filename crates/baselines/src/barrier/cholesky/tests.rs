@@ -52,7 +52,8 @@ fn a_solution_multiplied_by_the_matrix_is_the_right_hand_side() {
 #[test]
 fn fronts_stay_small_where_few_vertices_touch() {
     let (inertia, elements, positions) = grid(30, &mut fastrand::Rng::with_seed(3));
-    let factor = Cholesky::new(&System::new(&inertia, &elements), 0.0, &positions).expect("positive definite");
+    let factor =
+        Cholesky::new(&System::new(&inertia, &elements), 0.0, &positions).expect("positive definite");
     let largest = factor.fronts.iter().map(|front| front.vertices.len()).max();
     // Separators of a sheet of 30 x 30 x 3 vertices have about 90, and a few reach a front.
     assert!(largest < Some(400), "{largest:?} of {}", positions.len());

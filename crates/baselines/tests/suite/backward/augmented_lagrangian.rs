@@ -21,7 +21,8 @@ fn it_comes_to_the_corner_of_two_constraints() {
     }
     // And where only the second holds.
     let expected = Solution { y: vec![Vector::new(2.0, -2.0, 0.0)], lambda: vec![0.0, 2f64.sqrt()] };
-    descend(&System::corner([1.0, -3.0]), AugmentedLagrangian::by_vertices(4000)).assert_near(&expected, 1e-9);
+    descend(&System::corner([1.0, -3.0]), AugmentedLagrangian::by_vertices(4000))
+        .assert_near(&expected, 1e-9);
     // As published.
     descend(&System::corner([1.0, -3.0]), AugmentedLagrangian::new(4000)).assert_near(&expected, 1e-4);
 }

@@ -5,9 +5,7 @@ use bowknot_baselines::barrier::{BarrierParams, DescentStep};
 use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact, SweptSearch};
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
-use bowknot_baselines::twoway::{
-    ForwardStep, LcpBackward, Params, ResolveInput, Resolver, Statistics,
-};
+use bowknot_baselines::twoway::{ForwardStep, LcpBackward, Params, ResolveInput, Resolver, Statistics};
 
 const SLAB: AdditiveCcd = AdditiveCcd { slackness: 0.1, speed: ClosingSpeed::Slab, max_iterations: 1000 };
 
