@@ -61,7 +61,7 @@ impl Figure for Tolerance {
                 .map(|method| {
                     let points =
                         TOLERANCES.iter().filter_map(|&tau| Some((tau, over_scenes(method, tau, value)?)));
-                    Series::new(*method, Style::Line, points)
+                    Series::new(method, Style::Line, points)
                 })
                 .collect(),
             front: false,
@@ -72,7 +72,8 @@ impl Figure for Tolerance {
         ];
         let texts = TOLERANCES.map(|tau| {
             let of_method = |method: &&str| {
-                let (other, fast) = ((*method, &*change(tau)), ("fast", &*change(tau)));
+                let change = change(tau);
+                let (other, fast) = ((*method, change.as_str()), ("fast", change.as_str()));
                 let cpu = ratios(&compared, other, fast, |s, _| s.cpu);
                 let error = ratios(&compared, other, fast, |s, referenced| s.error(referenced));
                 format!("{method} {} and {}", times(geometric_mean(&cpu)), times(geometric_mean(&error)))
