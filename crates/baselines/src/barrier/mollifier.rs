@@ -1,9 +1,8 @@
 //! The factor by which the barrier between two edges fades as they become parallel (Li et al. 2020), where
 //! the distance has no gradient.
 
-use super::hessian::Block12;
 use bowknot_twoway::geometry::{Point, Vector};
-use nalgebra::{Matrix3, SVector};
+use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// Share of the product of both squared rest lengths below which |u x v|^2 counts as nearly parallel.
 const THRESHOLD: f64 = 1e-3;
@@ -59,13 +58,13 @@ pub fn gradient(x: &[Point; 4]) -> SVector<f64, 12> {
 }
 
 /// Second derivatives of c.
-pub fn hessian(x: &[Point; 4]) -> Block12 {
+pub fn hessian(x: &[Point; 4]) -> SMatrix<f64, 12, 12> {
     let [u, v] = along(x);
     let identity = Matrix3::identity();
     let by_u_u = 2.0 * (v.norm_squared() * identity - v * v.transpose());
     let by_v_v = 2.0 * (u.norm_squared() * identity - u * u.transpose());
     let by_u_v = 2.0 * (2.0 * u * v.transpose() - v * u.transpose() - u.dot(&v) * identity);
-    let mut hessian = Block12::zeros();
+    let mut hessian = SMatrix::<f64, 12, 12>::zeros();
     for i in 0..4 {
         for j in 0..4 {
             let block = match (i / 2, j / 2) {

@@ -1,11 +1,11 @@
 //! Contacts alone: one problem for methods with and without edge limits.
 
 use super::collision_error::finding;
-use super::overview::{OverFast, against_fast};
 use crate::bench::Bench;
 use crate::case::{ProblemLengths, cases};
 use crate::figure::{Figure, Part, Report};
 use crate::methods::{METHODS, Setting};
+use crate::over_fast::{OverFast, against_fast};
 use crate::solve::Against;
 use crate::summary::{Compared, on_cases, table};
 use crate::table::{Entry, Table};
