@@ -1,7 +1,7 @@
 //! The baselines also guarantee that no straight path of any step intersects. The judge decides this exactly.
 
 use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
-use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact};
+use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact, SweptSearch};
 use bowknot_errors::{Errors, ParamError};
 use bowknot_safety::scenario::{Preset, plain};
 use bowknot_safety::search::{failing_share, search_many};
@@ -33,13 +33,13 @@ fn watched<S: Search, B: BackwardStep, F: ForwardStep<S>>(
 /// Presets and speeds in turn. With a minimum separation: where a tenth of the gap is left step by step, it
 /// falls to 1e-12 m within these few steps, too near for the judge to tell a miss from a hit. With few
 /// iterations: along a kilometer there would be many, and stopping early is as safe.
-fn with_impacts<F: ForwardStep<TrustRegionSearch>>(
+fn with_impacts<F: ForwardStep<SweptSearch>>(
     forward: impl Fn(AdditiveCcd) -> Result<F, Errors<ParamError>> + Sync,
 ) {
     for (preset, speed) in [(Preset::Fast, ClosingSpeed::Slab), (Preset::Paper, ClosingSpeed::Travel)] {
         let ccd = AdditiveCcd { speed, max_iterations: 50, ..AdditiveCcd::default() };
         watched(preset, 1e-8, |scene| {
-            let search = TrustRegionSearch::new(&scene);
+            let search = SweptSearch::new(&scene);
             let backward = LcpBackward::new();
             let forward = forward(ccd).map_err(ResolveError::Params)?;
             Ok(Resolver::with_stages(scene, search, backward, forward))
@@ -58,8 +58,10 @@ fn no_step_of_the_log_barrier_by_descent_intersects() {
 #[test]
 fn no_step_of_the_log_barrier_by_newtons_method_intersects() {
     let ccd = AdditiveCcd { speed: ClosingSpeed::Slab, max_iterations: 50, ..AdditiveCcd::default() };
-    let newton = |scene| by_newton(scene, BarrierParams::default(), ccd).map_err(ResolveError::Params);
-    watched(Preset::Fast, 1e-8, newton);
+    for params in [BarrierParams::default(), BarrierParams::ipc()] {
+        let newton = |scene| by_newton(scene, params.clone(), ccd).map_err(ResolveError::Params);
+        watched(Preset::Fast, 1e-8, newton);
+    }
 }
 
 #[test]

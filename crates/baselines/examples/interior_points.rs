@@ -6,12 +6,12 @@
 #![allow(clippy::print_stdout)] // it is a command
 
 use bowknot_baselines::barrier::{BarrierParams, Scaling, by_descent, by_newton};
-use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact};
+use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact, SweptSearch};
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{
     CertifiedForward, CollisionScene, ContactData, ForwardStep, LcpBackward, Params, ResolveInput, Resolver,
-    TrustRegionSearch,
+    Search, TrustRegionSearch,
 };
 use bowknot_baselines::{Composed, Method};
 
@@ -35,14 +35,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let barrier = BarrierParams::default();
     let plain = BarrierParams { scaling: Scaling::Mass, ..BarrierParams::default() };
     let (fast, paper) = (Params::fast, Params::paper);
+    let (regions, swept) = (TrustRegionSearch::new, SweptSearch::new);
 
     let mut methods: Vec<Box<dyn Method>> = vec![
-        two_way("two-way, fast", collision_scene(fast())?, CertifiedForward::default()),
-        two_way("two-way, paper", collision_scene(paper())?, CertifiedForward::default()),
-        two_way("two-way, fast, earliest impact", collision_scene(fast())?, EarliestImpact::new(travel)?),
-        two_way("the same, slab speeds", collision_scene(fast())?, EarliestImpact::new(slab)?),
-        two_way("two-way, fast, impact per vertex", collision_scene(fast())?, PerVertexImpact::new(travel)?),
-        two_way("the same, slab speeds", collision_scene(fast())?, PerVertexImpact::new(slab)?),
+        two_way("two-way, fast", collision_scene(fast())?, regions, CertifiedForward::default()),
+        two_way("two-way, paper", collision_scene(paper())?, regions, CertifiedForward::default()),
+        two_way("two-way, earliest impact", collision_scene(fast())?, swept, EarliestImpact::new(travel)?),
+        two_way("the same, slab speeds", collision_scene(fast())?, swept, EarliestImpact::new(slab)?),
+        two_way("two-way, impact per vertex", collision_scene(fast())?, swept, PerVertexImpact::new(travel)?),
+        two_way("the same, slab speeds", collision_scene(fast())?, swept, PerVertexImpact::new(slab)?),
     ];
     for (bound, params) in [("planes", fast()), ("isotropic", paper())] {
         for (scaling, barrier) in [("blocks", &barrier), ("mass", &plain)] {
@@ -53,6 +54,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let newton = by_newton(collision_scene(paper())?, barrier.clone(), travel)?;
     methods.push(Box::new(Composed::new("log barrier, Newton", newton)));
+    let ipc = by_newton(collision_scene(paper())?, BarrierParams::ipc(), travel)?;
+    methods.push(Box::new(Composed::new("IPC", ipc)));
     let edges = BarrierParams { edge_stiffness: 1000.0, ..barrier };
     let newton = by_newton(collision_scene(paper())?, edges, travel)?;
     methods.push(Box::new(Composed::new("the same, edges by penalty", newton)));
@@ -82,12 +85,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn two_way<F: ForwardStep<TrustRegionSearch> + 'static>(
+fn two_way<S: Search + 'static, F: ForwardStep<S> + 'static>(
     name: &str,
     scene: CollisionScene,
+    search: impl FnOnce(&CollisionScene) -> S,
     forward: F,
 ) -> Box<dyn Method> {
-    let search = TrustRegionSearch::new(&scene);
+    let search = search(&scene);
     let backward = LcpBackward::new();
     Box::new(Composed::new(name, Resolver::with_stages(scene, search, backward, forward)))
 }

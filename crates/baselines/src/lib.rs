@@ -11,6 +11,7 @@
 
 pub mod barrier;
 pub mod ccd;
+mod geometry;
 mod method;
 pub mod rows;
 pub mod zones;

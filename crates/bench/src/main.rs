@@ -12,7 +12,7 @@
 //! | `record`, `case`, `targets` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
 //! | `simulate`, `process` | whole simulations and the distances between them; simulations in other processes |
-//! | `summary` | results of settings on the problems of scenes |
+//! | `summary`, `over_fast` | results of settings on the problems of scenes; methods over `fast` |
 //! | `stability` | small scenes at the ends of what users ask for, under the judge |
 //! | `measures` | the quality of a result, measured alike for every method |
 //! | `chart`, `table` | SVG, CSV and Markdown |
@@ -36,6 +36,7 @@ mod git;
 mod machine;
 mod measures;
 mod methods;
+mod over_fast;
 mod page;
 mod pages;
 mod process;

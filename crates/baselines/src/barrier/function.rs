@@ -1,9 +1,9 @@
-//! The barrier as a function of one distance (paper, Eq. 8).
+//! The barriers as functions of one distance.
 
 /// Smallest gap as a share of the range; a smaller gap counts as this one.
-const MIN_SHARE: f64 = 1e-9;
+const MIN_SHARE: f64 = 1e-18;
 
-/// Value and derivatives of a barrier.
+/// Value and derivatives of a barrier. Units are those of a function of gaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jet {
     /// B [J].
@@ -14,7 +14,8 @@ pub struct Jet {
     pub curvature: f64,
 }
 
-/// B(s) = -k (s - r)^2 ln(s/r) for a gap s [m] below the range r [m], 0 above; k is the strength [kg/s^2].
+/// Eq. 8 of the paper: B(s) = -k (s - r)^2 ln(s/r) for a gap s [m] below the range r [m], 0 above; k is the
+/// strength [kg/s^2].
 ///
 /// With u = s/r: B = -k r^2 (u-1)^2 ln u, B' = -k r (u-1) [2 ln u + (u-1)/u], B'' = -k [2 ln u + 4 (u-1)/u -
 /// ((u-1)/u)^2]. It is convex: ln u and (u-1)/u are negative below the range, so every term of B'' is at
@@ -29,6 +30,19 @@ pub fn barrier(strength: f64, gap: f64, range: f64) -> Jet {
         value: -strength * range * range * below * below * log,
         slope: -strength * range * below * (2.0 * log + ratio),
         curvature: -strength * (2.0 * log + 4.0 * ratio - ratio * ratio),
+    }
+}
+
+/// The barrier of IPC (Li et al. 2020): B(d) = -k (D - R)^2 ln(D/R) with D = d^2 - xi^2 and R = r^2 - xi^2,
+/// for a distance d and a range r that both include the minimum separation xi [m] (Li et al. 2021); k in
+/// kg/(m^2 s^2). It is [`barrier`] of D, derived by d.
+pub fn squared_barrier(stiffness: f64, distance: f64, range: f64, min_separation: f64) -> Jet {
+    let thickness = min_separation * min_separation;
+    let of_square = barrier(stiffness, distance * distance - thickness, range * range - thickness);
+    Jet {
+        value: of_square.value,
+        slope: 2.0 * distance * of_square.slope,
+        curvature: 4.0 * distance * distance * of_square.curvature + 2.0 * of_square.slope,
     }
 }
 
@@ -53,6 +67,25 @@ mod tests {
             );
             assert!(at(s).value > 0.0 && at(s).slope < 0.0 && at(s).curvature > 0.0);
         }
+    }
+
+    #[test]
+    fn derivatives_by_the_distance_are_those_of_the_value() {
+        let (k, r) = (2e7, 0.002);
+        for (share, xi) in [(1e-4, 0.0), (0.1, 0.0), (0.6, 0.0), (0.97, 0.0), (0.3, 0.0005), (0.9, 0.0005)] {
+            let d = share * r;
+            let h = 1e-5 * (d - xi);
+            let at = |d| squared_barrier(k, d, r, xi);
+            let slope = (at(d + h).value - at(d - h).value) / (2.0 * h);
+            let curvature = (at(d + h).slope - at(d - h).slope) / (2.0 * h);
+            assert!((at(d).slope - slope).abs() < 1e-7 * (slope.abs() + k * r * r * r), "{share}: {slope}");
+            assert!((at(d).curvature - curvature).abs() < 1e-6 * (curvature.abs() + k * r * r), "{share}");
+            let [square, range] = [d * d - xi * xi, r * r - xi * xi];
+            let expected = -k * (square - range).powi(2) * (square / range).ln();
+            assert!((at(d).value / expected - 1.0).abs() < 1e-12, "{share}");
+            assert!(at(d).slope < 0.0 && at(d).curvature > 0.0, "{share}");
+        }
+        assert_eq!(squared_barrier(k, r, r, 0.0).value, 0.0);
     }
 
     #[test]

@@ -12,6 +12,7 @@
 //! 2020). For every pair H has rank 5 at most: it acts on W^T n, on W^T times both tangents, and on the C_a,
 //! so that a problem of eigenvalues of size 5 replaces one of size 12.
 
+use super::mollifier::{self, Mollifier};
 use super::objective::{Contact, Objective};
 use bowknot_twoway::geometry::{PairKind, Point, Vector};
 use nalgebra::{Matrix2, SMatrix, SVector};
@@ -49,7 +50,7 @@ pub fn elements(objective: &Objective, x: &[Point], contacts: &[Contact]) -> Vec
         .map(|contact| Element {
             vertices: contact.vertices,
             count: contact.kind.vertex_count(),
-            matrix: Factors::of(contact, &contact.vertices.map(|v| x[v as usize])).positive_part(),
+            matrix: of_contact(contact, &contact.vertices.map(|v| x[v as usize])),
         })
         .collect();
     let stiffness = objective.params().edge_stiffness;
@@ -64,6 +65,25 @@ pub fn elements(objective: &Objective, x: &[Point], contacts: &[Contact]) -> Vec
         Element { vertices: [a, b, a, a], count: 2, matrix }
     }));
     elements
+}
+
+/// The Hessian of a pair's barrier with its mollifier, made positive semidefinite.
+fn of_contact(contact: &Contact, x: &[Point; 4]) -> Block12 {
+    let factors = Factors::of(contact, x);
+    let Mollifier { value, slope, curvature } = contact.mollifier;
+    if !contact.mollifier.fades() {
+        return value * factors.positive_part();
+    }
+    let turn = mollifier::gradient(x);
+    let pull = contact.jet.slope * factors.v.column(0);
+    let mixed = turn * pull.transpose();
+    let barrier = contact.jet.value;
+    let whole = value * factors.matrix()
+        + slope * (mixed + mixed.transpose())
+        + barrier * (curvature * turn * turn.transpose() + slope * mollifier::hessian(x));
+    let eigen = whole.symmetric_eigen();
+    let kept = Block12::from_diagonal(&eigen.eigenvalues.map(|e| e.max(0.0)));
+    eigen.eigenvectors * kept * eigen.eigenvectors.transpose()
 }
 
 /// The changes of the signed weights with each place that is free to move, and the number of such places.
@@ -164,6 +184,11 @@ impl Factors {
             factors.k.fixed_view_mut::<2, 2>(3, 3).copy_from(&(-turn * inverse));
         }
         factors
+    }
+
+    /// The Hessian.
+    fn matrix(&self) -> Block12 {
+        self.v * self.k * self.v.transpose()
     }
 
     /// The Hessian with its negative eigenvalues set to 0: with V = Q R and orthonormal Q, those of R K R^T.

@@ -1,12 +1,11 @@
 //! One step size for all vertices: at most that of the earliest impact, then halved until the energy does not
 //! rise (Li et al. 2020, Algorithm 1).
 
-use super::{BarrierParams, Objective};
-use crate::ccd::{AdditiveCcd, PathSearch, PathTime, earliest};
-use bowknot_errors::{Errors, ParamError};
+use super::Objective;
+use crate::ccd::{AdditiveCcd, PathTime, SweptSearch, earliest};
 use bowknot_twoway::geometry::{Point, Vector};
 use bowknot_twoway::stepper::{StepReport, Stepper};
-use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
+use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Statistics};
 
 /// Largest number of halvings; then nothing moves.
 const MAX_HALVINGS: usize = 40;
@@ -22,21 +21,13 @@ pub struct LineSearch {
     objective: Objective,
     ccd: AdditiveCcd,
     stepper: Stepper,
-    search: PathSearch,
     paths: Vec<Vector>,
 }
 
 impl LineSearch {
-    /// A line search on the same objective as the backward step's.
-    ///
-    /// # Errors
-    /// Parameters out of their range.
-    pub fn new(
-        scene: &CollisionScene,
-        params: BarrierParams,
-        ccd: AdditiveCcd,
-    ) -> Result<Self, Errors<ParamError>> {
-        Ok(Self { objective: Objective::new(scene, params)?, ccd, ..Self::default() })
+    /// A line search on the backward step's objective.
+    pub fn new(objective: &Objective, ccd: AdditiveCcd) -> Self {
+        Self { objective: objective.sharing(), ccd, ..Self::default() }
     }
 
     /// The largest of `step`, half of it, .. that does not raise the energy; 0 after too many halvings.
@@ -58,7 +49,7 @@ impl LineSearch {
     }
 }
 
-impl<S: Search> ForwardStep<S> for LineSearch {
+impl ForwardStep<SweptSearch> for LineSearch {
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.objective.begin(scene, state);
         self.stepper.begin(scene.rest().len());
@@ -68,15 +59,13 @@ impl<S: Search> ForwardStep<S> for LineSearch {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut S,
+        search: &mut SweptSearch,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        let range = self.objective.largest_range(scene);
-        self.search.nearest = range;
-        self.search.list(scene, state, search, &self.paths, PathTime::Common, statistics);
+        search.list(scene, state, &self.paths, PathTime::Common, statistics);
         let mut step = earliest(&self.ccd, scene, state, &self.paths);
         let still = |v: usize| state.is_movable(v) || self.paths[v] == Vector::zeros();
         if (0..self.paths.len()).all(still) {

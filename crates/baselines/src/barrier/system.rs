@@ -1,5 +1,5 @@
-//! The Newton system: inertia and elements, solved by conjugate gradients with 3x3 blocks of the diagonal as
-//! preconditioner.
+//! The Newton system: inertia and elements. Conjugate gradients solve it with 3x3 blocks of the diagonal as
+//! preconditioner, [`super::cholesky`] directly.
 //!
 //! The matrix is stored as sparse rows of 3x3 blocks, which are fewer than the blocks of the elements,
 //! because a vertex in contact has several pairs. Each row sums its elements in their order: the same bits
@@ -12,6 +12,11 @@ use rayon::prelude::*;
 
 /// Smallest number of vertices of a parallel task.
 const CHUNK: usize = 256;
+/// Residual at which conjugate gradients end, relative to the right-hand side, both in the norm of the
+/// preconditioner.
+const TOLERANCE: f64 = 1e-4;
+/// Largest number of their iterations.
+const MAX_ITERATIONS: usize = 2000;
 
 /// A symmetric positive definite matrix: inertia [N/m] of each vertex, and elements. Rows of vertices without
 /// inertia are zero: these vertices do not move.
@@ -23,15 +28,6 @@ pub struct System {
     blocks: Vec<Matrix3<f64>>,
     /// Inverses of the diagonal blocks; 0 for vertices that do not move.
     inverses: Vec<Matrix3<f64>>,
-}
-
-/// Iterations and residual of a solve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolveReport {
-    /// Iterations made.
-    pub iterations: usize,
-    /// Residual relative to the right-hand side, both in the norm of the preconditioner.
-    pub residual: f64,
 }
 
 impl System {
@@ -82,6 +78,27 @@ impl System {
         Self { starts, columns, blocks, inverses }
     }
 
+    /// Whether a vertex moves.
+    pub fn is_free(&self, v: u32) -> bool {
+        !self.columns(v).is_empty()
+    }
+
+    /// Largest entry of a diagonal block [N/m].
+    pub fn largest(&self) -> f64 {
+        self.blocks.iter().map(Matrix3::amax).fold(0.0, f64::max)
+    }
+
+    /// The columns of a row, ascending.
+    pub fn columns(&self, v: u32) -> &[u32] {
+        &self.columns[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
+    }
+
+    /// The columns of a row and their blocks.
+    pub fn row(&self, v: u32) -> impl Iterator<Item = (u32, &Matrix3<f64>)> {
+        let entries = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
+        self.columns(v).iter().copied().zip(&self.blocks[entries])
+    }
+
     /// A x; 0 for vertices that do not move. Their entries of `x` still act on the others.
     pub fn multiply(&self, x: &[Vector], product: &mut [Vector]) {
         product.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(v, row)| {
@@ -95,30 +112,23 @@ impl System {
         });
     }
 
-    /// Solves A x = b to a residual of `tolerance` relative to b, from x = 0; `b` is 0 for vertices that do
-    /// not move.
-    pub fn solve(
-        &self,
-        b: &[Vector],
-        tolerance: f64,
-        max_iterations: usize,
-        x: &mut Vec<Vector>,
-    ) -> SolveReport {
+    /// Solves A x = b in place by conjugate gradients from x = 0; `b` is 0 for vertices that do not move.
+    /// Returns the number of iterations.
+    pub fn iterate(&self, b: &mut [Vector]) -> usize {
         let count = b.len();
-        x.clear();
-        x.resize(count, Vector::zeros());
+        let mut x = vec![Vector::zeros(); count];
         let precondition = |r: &[Vector], z: &mut [Vector]| {
             z.iter_mut().zip(r).zip(&self.inverses).for_each(|((z, r), inverse)| *z = inverse * r);
         };
-        let mut r = b.to_vec();
+        let r = b;
         let mut z = vec![Vector::zeros(); count];
-        precondition(&r, &mut z);
+        precondition(r, &mut z);
         let mut p = z.clone();
         let mut product = vec![Vector::zeros(); count];
-        let first = dot(&r, &z);
+        let first = dot(r, &z);
         let mut rz = first;
-        let mut report = SolveReport { iterations: 0, residual: 1.0 };
-        while report.iterations < max_iterations && rz > tolerance * tolerance * first {
+        let mut iterations = 0;
+        while iterations < MAX_ITERATIONS && rz > TOLERANCE * TOLERANCE * first {
             self.multiply(&p, &mut product);
             let curvature = dot(&p, &product);
             if curvature.is_nan() || curvature <= 0.0 {
@@ -129,17 +139,17 @@ impl System {
                 x[v] += step * p[v];
                 r[v] -= step * product[v];
             }
-            precondition(&r, &mut z);
-            let next = dot(&r, &z);
+            precondition(r, &mut z);
+            let next = dot(r, &z);
             let share = next / rz;
             rz = next;
             for v in 0..count {
                 p[v] = z[v] + share * p[v];
             }
-            report.iterations += 1;
+            iterations += 1;
         }
-        report.residual = if first > 0.0 { (rz.max(0.0) / first).sqrt() } else { 0.0 };
-        report
+        r.copy_from_slice(&x);
+        iterations
     }
 }
 

@@ -3,11 +3,11 @@
 
 use super::additive::AdditiveCcd;
 use super::pairs::clearance;
-use super::path_search::{PathSearch, PathTime};
+use super::swept::{PathTime, SweptSearch};
 use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::{StepReport, Stepper};
-use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
+use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Statistics};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -19,7 +19,6 @@ const CHUNK: usize = 256;
 pub struct EarliestImpact {
     ccd: AdditiveCcd,
     stepper: Stepper,
-    search: PathSearch,
     paths: Vec<Vector>,
 }
 
@@ -51,7 +50,7 @@ pub(crate) fn earliest(
     f64::from_bits(first.into_inner())
 }
 
-impl<S: Search> ForwardStep<S> for EarliestImpact {
+impl ForwardStep<SweptSearch> for EarliestImpact {
     fn begin(&mut self, scene: &CollisionScene, _: &ResolveState) {
         self.stepper.begin(scene.rest().len());
     }
@@ -60,13 +59,13 @@ impl<S: Search> ForwardStep<S> for EarliestImpact {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut S,
+        search: &mut SweptSearch,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        self.search.list(scene, state, search, &self.paths, PathTime::Common, statistics);
+        search.list(scene, state, &self.paths, PathTime::Common, statistics);
         let time = earliest(&self.ccd, scene, state, &self.paths);
         for v in 0..self.paths.len() {
             self.stepper.limit(v, time);

@@ -9,11 +9,11 @@
 
 use super::additive::AdditiveCcd;
 use super::pairs::clearance;
-use super::path_search::{PathSearch, PathTime};
+use super::swept::{PathTime, SweptSearch};
 use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::{StepReport, Stepper};
-use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
+use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Statistics};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -25,7 +25,6 @@ const CHUNK: usize = 256;
 pub struct PerVertexImpact {
     ccd: AdditiveCcd,
     stepper: Stepper,
-    search: PathSearch,
     /// Paths of the present round.
     paths: Vec<Vector>,
     fractions: Vec<f64>,
@@ -85,7 +84,7 @@ impl PerVertexImpact {
     }
 }
 
-impl<S: Search> ForwardStep<S> for PerVertexImpact {
+impl ForwardStep<SweptSearch> for PerVertexImpact {
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         let count = scene.rest().len();
         self.stepper.begin(count);
@@ -99,7 +98,7 @@ impl<S: Search> ForwardStep<S> for PerVertexImpact {
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
-        search: &mut S,
+        search: &mut SweptSearch,
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
@@ -112,7 +111,7 @@ impl<S: Search> ForwardStep<S> for PerVertexImpact {
         }
         self.limit_bodies(scene, state);
         self.shorten();
-        self.search.list(scene, state, search, &self.paths, PathTime::PerVertex, statistics);
+        search.list(scene, state, &self.paths, PathTime::PerVertex, statistics);
         self.changed.fill(true);
         for round in 1..=Self::MAX_ROUNDS {
             let common = self.limit(scene, state);

@@ -14,11 +14,13 @@ mod incidence;
 mod inter_step;
 mod jacobi;
 mod linear_system;
+mod zone_descent;
 
-pub use augmented_lagrangian::AugmentedLagrangian;
+pub use augmented_lagrangian::{AugmentedLagrangian, Descent};
 pub use inter_step::InterStepChebyshev;
 pub use jacobi::ProjectedJacobi;
 pub use linear_system::LinearSystem;
+pub(crate) use linear_system::solve_equations;
 
 use bowknot_twoway::constraints::ContactForm;
 use bowknot_twoway::{

@@ -2,8 +2,7 @@
 //! vertices that collide are handled together.
 //!
 //! - [`ImpactZones`]: the target is optimized until the straight path to it is free of impacts (Harmon et al.
-//!   2008, Tang et
-//!   al. 2018). If that fails, nothing moves and the call counts as failed (paper, section 3.3).
+//!   2008, Tang et al. 2018). If that fails, nothing moves and the call counts as failed (paper, section 3.3).
 //! - [`RigidZones`]: vertices that collide move as one rigid body (Provot 1997, Bridson et al. 2002). This
 //!   never fails.
 //! - [`TwoPhase`]: impact zones first, then an interior point method if impacts remain (Wu et al. 2020).
@@ -18,6 +17,6 @@ mod two_phase;
 
 pub use impacts::{Impact, ImpactSearch};
 pub use optimizer::ImpactZones;
-pub use params::{ZoneParams, ZoneSolver};
+pub use params::{ZoneGoal, ZoneParams, ZoneSolver};
 pub use rigid::RigidZones;
 pub use two_phase::TwoPhase;

@@ -76,7 +76,7 @@ impl ImpactZones {
                 return Ok(Attempt { target, clear: impacts.is_empty() });
             }
             let backward = Instant::now();
-            impacts.iter().for_each(|impact| rows.add(scene, impact, positions, &paths));
+            impacts.iter().for_each(|impact| rows.add(scene, impact, positions, &paths, params.goal));
             if let Err(error) = rows.solve(scene, &call, params, &free, &mut y) {
                 // The rows are sound by construction: a refusal is a bug.
                 tracing::error!(%error, "impact zones refused their own rows");

@@ -1,8 +1,8 @@
 //! The rows of impacts, collected over the rounds of a call.
 
 use super::impacts::Impact;
-use super::params::{ZoneParams, ZoneSolver};
-use crate::rows::{AugmentedLagrangian, LinearSystem};
+use super::params::{ZoneGoal, ZoneParams, ZoneSolver};
+use crate::rows::{AugmentedLagrangian, LinearSystem, solve_equations};
 use bowknot_twoway::constraints::{Coloring, ContactForm, contact_row};
 use bowknot_twoway::geometry::{PairKind, Point, Vector, separation};
 use bowknot_twoway::lcp::{self, ConstraintSet, LcpState, Row, Schedule};
@@ -25,8 +25,15 @@ impl ImpactRows {
 
     /// Adds the row of an impact, or replaces the pair's row and keeps its multiplier. The row is linearized
     /// at the last time at which the pair is certain not to meet: n . (p - q)(y) >= contact distance with the
-    /// normal n there.
-    pub(crate) fn add(&mut self, scene: &CollisionScene, impact: &Impact, x: &[Point], paths: &[Vector]) {
+    /// normal n there. With the goal of a zero velocity, it is n . (p - q)(y) >= n . (p - q)(x).
+    pub(crate) fn add(
+        &mut self,
+        scene: &CollisionScene,
+        impact: &Impact,
+        x: &[Point],
+        paths: &[Vector],
+        goal: ZoneGoal,
+    ) {
         let kind = impact.kind;
         let mut vertices = impact.pair.vertices;
         let first = vertices[0];
@@ -41,7 +48,11 @@ impl ImpactRows {
             _ => separation::separate(kind, &points),
         };
         let row = contact_row(ContactForm::Gap, kind, [0, 1, 2, 3], &points, &separation, impact.delta);
-        let row = Row { vertices, ..row };
+        let mut row = Row { vertices, ..row };
+        if goal == ZoneGoal::ZeroVelocity {
+            let at_start = row.gradients.iter().zip(vertices).map(|(g, v)| g.dot(&x[v as usize].coords));
+            row.offset = -at_start.sum::<f64>();
+        }
         self.rows.entry((kind, impact.pair.elements)).or_insert((row, 0.0)).0 = row;
     }
 
@@ -79,7 +90,7 @@ impl ImpactRows {
         lcp::apply_multipliers(&system, &mut state)?;
         match params.solver {
             ZoneSolver::GaussSeidel => {
-                let tolerance = Some(params.tolerance * scene.lengths().delta);
+                let tolerance = Some(params.tolerance * scene.lengths().edge);
                 let params =
                     lcp::LcpParams { max_sweeps: params.max_sweeps, tolerance, ..lcp::LcpParams::default() };
                 match lcp::solve_colored(&system, &mut state, &params) {
@@ -87,8 +98,14 @@ impl ImpactRows {
                     Err(error) => return Err(error),
                 }
             }
-            ZoneSolver::LinearSystem => {
+            // Distances may contradict each other. Gauss-Seidel then comes to a compromise, where conjugate
+            // gradients diverge.
+            ZoneSolver::LinearSystem if params.goal == ZoneGoal::Distance => {
                 LinearSystem { sweeps: params.max_sweeps, projected: false }.sweep(&system, &mut state)?;
+            }
+            ZoneSolver::LinearSystem => {
+                let tolerance = params.tolerance * scene.lengths().edge;
+                solve_equations(&system, &mut state, tolerance, params.max_sweeps);
             }
             ZoneSolver::AugmentedLagrangian => {
                 self.descent.iterations = params.max_sweeps as usize;

@@ -50,8 +50,7 @@ impl Figure for CollisionError {
                  edges from rest` solves the same one. Barriers and impact zones have no edge limits. Impact \
                  zones only prevent intersections and keep no distance: a target without intersections on \
                  the way is returned unchanged; with 0.8 delta they solve the problem of the other methods \
-                 up to a fifth of the distance. The barriers stop at 0.001 mean edge lengths, `fast` at \
-                 0.01."
+                 up to a fifth of the distance."
             }
             Targets::Unaware => {
                 "The same with targets of a dynamics without repulsion (`--set \
@@ -197,8 +196,7 @@ pub fn finding(compared: &[Compared]) -> String {
         let [cpu, error] = over_fast(compared, method)?;
         Some(format!("{method} {} and {}", times(cpu), times(error)))
     };
-    let others: Vec<String> =
-        ["paper", "log barrier", "log barrier, Newton"].into_iter().filter_map(shown).collect();
+    let others: Vec<String> = ["paper", "log barrier", "IPC"].into_iter().filter_map(shown).collect();
     let faster: Vec<String> = METHODS
         .iter()
         .filter(|entry| over_fast(compared, entry.name).is_some_and(|[cpu, _]| cpu < 1.0))

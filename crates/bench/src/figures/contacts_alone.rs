@@ -1,30 +1,18 @@
 //! Contacts alone: one problem for methods with and without edge limits.
 
-use super::overview::{OverFast, against_fast};
+use super::collision_error::finding;
 use crate::bench::Bench;
 use crate::case::{ProblemLengths, cases};
 use crate::figure::{Figure, Part, Report};
-use crate::methods::Setting;
+use crate::methods::{METHODS, Setting};
+use crate::over_fast::{OverFast, against_fast};
 use crate::solve::Against;
-use crate::summary::{on_cases, ratios, table};
-use crate::table::{Entry, Table, geometric_mean, times};
+use crate::summary::{Compared, on_cases, table};
+use crate::table::{Entry, Table};
 use crate::targets::Targets;
 use anyhow::Result;
 
 pub struct ContactsAlone;
-
-/// `fast`, the paper's method, and all methods without edge limits.
-const METHODS: [&str; 9] = [
-    "fast",
-    "paper",
-    "log barrier",
-    "log barrier, Newton",
-    "Harmon, projected",
-    "impact zones",
-    "impact zones, 0.8 delta",
-    "rigid zones",
-    "two phases",
-];
 
 impl Figure for ContactsAlone {
     fn name(&self) -> &'static str {
@@ -36,42 +24,27 @@ impl Figure for ContactsAlone {
     }
 
     fn question(&self) -> &'static str {
-        "Barriers and impact zones have no edge limits. In the comparison of all methods, edges that they \
-         stretch to several times their length are part of their error. Here no method has edge limits \
-         (sigma infinite), and the problems have reference solutions of their own. Contact-unaware targets; \
-         all else as in `collision-error-unaware`."
+        "Barriers and impact zones have no edge limits. With them, edges that they stretch to several times \
+         their length would be part of their error. Here no method has edge limits (sigma infinite), and the \
+         problems have reference solutions of their own. Contact-unaware targets; all else as in \
+         `collision-error-unaware`."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
-        let scenes = Targets::Unaware.problem_sets(bench.size);
-        let settings = METHODS.iter().map(|m| Setting::of(m)).collect::<Result<Vec<_>>>()?;
-        let unlimited = ProblemLengths { stretch_limit: Some(f64::INFINITY), ..ProblemLengths::default() };
-        let mut by_scene = Vec::new();
-        for scene in scenes {
-            let cases = cases(bench, scene, bench.size.pick(2, 1, 1))?;
-            by_scene.push(cases.iter().map(|case| case.with_lengths("contacts alone", unlimited)).collect());
-        }
-        let compared = on_cases(bench, scenes, by_scene, &settings, 1, Against::Reference)?;
-        let texts = METHODS[1..].iter().map(|method| {
-            let mean = |values: Vec<f64>| times(geometric_mean(&values));
-            let (other, fast) = ((*method, ""), ("fast", ""));
-            format!(
-                "{method} {} and {}",
-                mean(ratios(&compared, other, fast, |s, _| s.cpu)),
-                mean(ratios(&compared, other, fast, |s, referenced| s.error(referenced)))
-            )
-        });
+        let settings: Vec<Setting> = METHODS.iter().map(Setting::plain).collect();
+        let names: Vec<&str> = METHODS.iter().map(|entry| entry.name).collect();
+        let compared = compared(bench, Targets::Unaware, &settings)?;
         Ok(Report {
             finding: format!(
-                "CPU time and error as multiples of those of `fast`, geometric means over the scenes: {}.",
-                texts.collect::<Vec<_>>().join("; ")
+                "CPU time and error as multiples of those of `fast`, geometric means over the scenes: {}",
+                finding(&compared)
             ),
             parts: vec![
                 Part::table(
                     format!("{}-ratios", self.name()),
                     "CPU time and error over those of `fast` without edge limits: geometric means over the \
                      scenes, smallest and largest",
-                    ratio_table(&against_fast(&compared, &METHODS)),
+                    ratio_table(&against_fast(&compared, &names)),
                 ),
                 Part::table(
                     self.name(),
@@ -81,6 +54,18 @@ impl Figure for ContactsAlone {
             ],
         })
     }
+}
+
+/// Problems without edge limits, solved by settings.
+pub fn compared(bench: &Bench, targets: Targets, settings: &[Setting]) -> Result<Vec<Compared>> {
+    let scenes = targets.problem_sets(bench.size);
+    let unlimited = ProblemLengths { stretch_limit: Some(f64::INFINITY), ..ProblemLengths::default() };
+    let mut by_scene = Vec::new();
+    for scene in scenes {
+        let cases = cases(bench, scene, bench.size.pick(2, 1, 1))?;
+        by_scene.push(cases.iter().map(|case| case.with_lengths("contacts alone", unlimited)).collect());
+    }
+    on_cases(bench, scenes, by_scene, settings, 1, Against::Reference)
 }
 
 fn ratio_table(methods: &[OverFast]) -> Table {

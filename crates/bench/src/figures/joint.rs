@@ -58,8 +58,11 @@ impl Figure for Joint {
     }
 
     fn question(&self) -> &'static str {
-        "The paper describes a joint method, whose backward step handles dynamics and contact together, and \
-         does not recommend it. The cheapest form of it: one backward and one forward step after each Newton \
+        "The paper describes a joint method, whose backward step handles dynamics and contact together (Eq. 5 \
+         and 6), and does not recommend it. Bowknot's own runs are of this kind: Newton's method solves for \
+         bodies and contacts together, and after each of its iterations the collision stage leads the way to \
+         its target. Both runs compared here are. They differ in how far the collision stage goes. The \
+         cheapest form: one backward and one forward step after each Newton \
          iteration of the whole time step (`solver.stop.max_steps=1`), so that one loop reduces the \
          incremental potential and keeps the rows. It is compared with the two-way method as a post-process, \
          which runs until its own rule is met, after each of fewer Newton iterations. One time step from \

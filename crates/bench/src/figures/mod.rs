@@ -28,6 +28,7 @@ mod sweeps;
 mod switches;
 mod table_1;
 mod table_2;
+mod tolerance;
 
 use crate::figure::Figure;
 use crate::targets::Targets;
@@ -38,6 +39,7 @@ pub const ALL: &[&dyn Figure] = &[
     &collision_error::CollisionError { targets: Targets::Aware },
     &collision_error::CollisionError { targets: Targets::Unaware },
     &contacts_alone::ContactsAlone,
+    &tolerance::Tolerance,
     &simulation_error::SimulationError,
     &integrators::Integrators,
     &convergence::Convergence,

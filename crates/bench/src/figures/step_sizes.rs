@@ -26,7 +26,7 @@ impl Figure for StepSizes {
         "In the paper, step sizes without CCD are five times faster at 1/100 s and seven times at 1/20 s, \
          for 10 to 20 % more steps. Here `paper` runs with its own bound on steps, and with conservative \
          additive CCD (Li et al. 2021): all vertices by the earliest impact, as in IPC, or each vertex by \
-         its own. (The bound of offset geometric contact, Chen et al. 2025, used by the trust region of \
+         its own. CCD searches once per step, along the paths. (The bound of offset geometric contact, Chen et al. 2025, used by the trust region of \
          ipctk and by NVIDIA Newton, is that of `paper`: `bound = \"isotropic\"`.) Contact-unaware targets; \
          needle and stack at both time steps. Wall seconds per problem: *broad*: searches, also those of \
          CCD along paths; *narrow*: distances, and CCD tests in the forward step."

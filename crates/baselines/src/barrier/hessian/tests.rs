@@ -1,15 +1,16 @@
 //! Against differences of gradients, feature by feature.
 
 use super::*;
-use crate::barrier::{barrier, element};
+use crate::barrier::barrier;
+use crate::geometry;
 
 const STRENGTH: f64 = 20.0;
 const RANGE: f64 = 0.5;
 
 fn contact(kind: PairKind, x: &[Point; 4]) -> Contact {
-    let separation = element::separation(kind, &[0, 1, 2, 3], 0, x, &[]);
+    let separation = geometry::separation(kind, &[0, 1, 2, 3], 0, x, &[]);
     let jet = barrier(STRENGTH, separation.distance, RANGE);
-    Contact { kind, vertices: [0, 1, 2, 3], separation, jet }
+    Contact { kind, vertices: [0, 1, 2, 3], separation, jet, mollifier: Mollifier::NONE }
 }
 
 fn gradient(kind: PairKind, x: &[Point; 4]) -> SMatrix<f64, 12, 1> {
@@ -24,8 +25,7 @@ fn gradient(kind: PairKind, x: &[Point; 4]) -> SMatrix<f64, 12, 1> {
 }
 
 fn pair_hessian(contact: &Contact, x: &[Point; 4]) -> Block12 {
-    let Factors { v, k } = Factors::of(contact, x);
-    v * k * v.transpose()
+    Factors::of(contact, x).matrix()
 }
 
 /// One pair for each set of closest features.
@@ -92,4 +92,35 @@ fn parallel_edges_give_a_finite_positive_part() {
     let x = [p(0.0, 0.0, 0.1), p(1.0, 0.0, 0.1), p(0.2, 0.0, 0.0), p(1.2, 0.0, 0.0)];
     let part = Factors::of(&contact(PairKind::EdgeEdge, &x), &x).positive_part();
     assert!(part.iter().all(|e| e.is_finite()) && part.amax() > 0.0);
+}
+
+#[test]
+fn the_hessian_of_edges_that_are_nearly_parallel_is_that_of_differences() {
+    let p = Point::new;
+    let x = [p(0.0, -0.02, 0.2), p(1.0, 0.02, 0.2), p(-0.1, 0.0, 0.0), p(1.2, 0.001, 0.0)];
+    let of = |x: &[Point; 4]| Contact {
+        mollifier: Mollifier::of_edges(x, &x.map(|p| 1.4 * p)),
+        ..contact(PairKind::EdgeEdge, x)
+    };
+    let force = |moved: &[Point; 4]| {
+        let contact = Contact { mollifier: Mollifier::of_edges(moved, &x.map(|p| 1.4 * p)), ..of(moved) };
+        contact.mollifier.value * gradient(PairKind::EdgeEdge, moved)
+            + contact.mollifier.slope * contact.jet.value * mollifier::gradient(moved)
+    };
+    assert!(of(&x).mollifier.fades() && places(PairKind::EdgeEdge, &of(&x).separation.weights).1 == 2);
+    let h = 1e-6;
+    let mut whole = Block12::zeros();
+    for column in 0..12 {
+        let moved = |sign: f64| {
+            let mut moved = x;
+            moved[column / 3][column % 3] += sign * h;
+            force(&moved)
+        };
+        whole.set_column(column, &((moved(1.0) - moved(-1.0)) / (2.0 * h)));
+    }
+    let eigen = (0.5 * (whole + whole.transpose())).symmetric_eigen();
+    let kept = Block12::from_diagonal(&eigen.eigenvalues.map(|e| e.max(0.0)));
+    let expected = eigen.eigenvectors * kept * eigen.eigenvectors.transpose();
+    let error = (of_contact(&of(&x), &x) - expected).amax();
+    assert!(error < 1e-5 * expected.amax(), "{error} of {}", expected.amax());
 }

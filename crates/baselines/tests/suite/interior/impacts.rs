@@ -2,22 +2,20 @@
 
 use crate::common::{Scene, assert_same_on_any_number_of_threads, resolve_watched};
 use bowknot_baselines::barrier::{BarrierParams, DescentStep};
-use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact};
+use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact, SweptSearch};
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
-use bowknot_baselines::twoway::{
-    ForwardStep, LcpBackward, Params, ResolveInput, Resolver, Statistics, TrustRegionSearch,
-};
+use bowknot_baselines::twoway::{ForwardStep, LcpBackward, Params, ResolveInput, Resolver, Statistics};
 
 const SLAB: AdditiveCcd = AdditiveCcd { slackness: 0.1, speed: ClosingSpeed::Slab, max_iterations: 1000 };
 
-fn two_way<F: ForwardStep<TrustRegionSearch>>(
+fn two_way<F: ForwardStep<SweptSearch>>(
     scene: &Scene,
     params: Params,
     forward: F,
-) -> Resolver<TrustRegionSearch, LcpBackward, F> {
+) -> Resolver<SweptSearch, LcpBackward, F> {
     let collision = scene.collision_scene(params);
-    let search = TrustRegionSearch::new(&collision);
+    let search = SweptSearch::new(&collision);
     Resolver::with_stages(collision, search, LcpBackward::new(), forward)
 }
 
@@ -39,20 +37,23 @@ fn sheets_that_change_places_never_intersect_on_the_way() {
             let what = format!("{name}, earliest, {:?}", ccd.speed);
             let mut resolver = two_way(&scene, params.clone(), EarliestImpact::new(ccd).unwrap());
             let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
+            assert_eq!(report.searches, report.steps + 1, "{what}");
             check(&what, &scene, &x, &report);
 
             let what = format!("{name}, per vertex, {:?}", ccd.speed);
             let mut resolver = two_way(&scene, params.clone(), PerVertexImpact::new(ccd).unwrap());
             let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
+            assert_eq!(report.searches, report.steps + 1, "{what}");
             check(&what, &scene, &x, &report);
 
             let what = format!("{name}, per vertex, log barrier, {:?}", ccd.speed);
             let collision = scene.collision_scene(params.clone());
             let step = DescentStep::new(&collision, BarrierParams::default()).unwrap();
-            let search = TrustRegionSearch::new(&collision);
+            let search = SweptSearch::new(&collision);
             let mut resolver =
                 Resolver::with_stages(collision, search, step, PerVertexImpact::new(ccd).unwrap());
             let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
+            assert_eq!(report.searches, report.steps + 1, "{what}");
             check(&what, &scene, &x, &report);
         }
     }

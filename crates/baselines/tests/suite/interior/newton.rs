@@ -1,7 +1,9 @@
 //! The log barrier by Newton's method.
 
 use crate::common::{Scene, assert_same_on_any_number_of_threads, resolve_watched};
-use bowknot_baselines::barrier::{BarrierParams, Objective, barrier, by_descent, by_newton};
+use bowknot_baselines::barrier::{
+    BarrierParams, LinearSolver, Objective, barrier, by_descent, by_newton, squared_barrier,
+};
 use bowknot_baselines::ccd::AdditiveCcd;
 use bowknot_baselines::twoway::geometry::{Point, Vector};
 use bowknot_baselines::twoway::{AcceptedState, Params, ResolveInput};
@@ -30,6 +32,48 @@ fn a_vertex_pushed_against_a_triangle_ends_where_the_barrier_balances_its_inerti
         let push = barrier(200.0, x[3].z - min_separation, 0.01 - min_separation).slope;
         assert!((force + push).abs() < 1e-6 * force, "{force} N, {push} N at {} m", x[3].z);
         assert!((x[3].xy() - scene.x[3].xy()).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn ipc_starts_with_its_least_stiffness_where_nothing_touches() {
+    let scene = Scene::vertex_above_triangle(0.05);
+    let mut target = scene.x.clone();
+    target[3].z = -0.03;
+    let mut params = Params::paper();
+    params.contact.delta = Some(0.01);
+    let settings = BarrierParams { tolerance: 1e-9, ..BarrierParams::ipc() };
+    let mut resolver = by_newton(scene.collision_scene(params), settings, AdditiveCcd::default()).unwrap();
+    let (x, report) = resolve_watched(&mut resolver, &scene, &target, "ipc");
+    assert!(report.converged && report.steps < 40, "{report:?}");
+    // 1e11 m/h^2 = 4 kappa d0 b''(d0) at the square d0 of 1e-8 of the diagonal.
+    let diagonal = Vector::new(3.0, 3.0, 0.05).norm();
+    let (square, range, inertia) = ((1e-8 * diagonal).powi(2), 0.01 * 0.01, 0.01 / 1e-4);
+    let stiffness = 1e11 * inertia / (4.0 * square * barrier(1.0, square, range).curvature);
+    let force = inertia * (x[3].z + 0.03);
+    let push = squared_barrier(stiffness, x[3].z, 0.01, 0.0).slope;
+    assert!((force + push).abs() < 1e-6 * force, "{force} N, {push} N at {} m", x[3].z);
+}
+
+#[test]
+fn both_linear_solvers_and_both_barriers_keep_sheets_apart() {
+    // The sheets lie one above the other, so that all their edges are parallel.
+    let scene = Scene::two_sheets(4, 0.008);
+    let target = pressed(&scene, 0.006);
+    for params in [BarrierParams::default(), BarrierParams::ipc()] {
+        let ends = [LinearSolver::Cholesky, LinearSolver::ConjugateGradients].map(|linear_solver| {
+            let mut two_way = Params::paper();
+            two_way.contact.delta = Some(0.01);
+            let settings = BarrierParams { linear_solver, tolerance: 1e-4, ..params.clone() };
+            let collision = scene.collision_scene(two_way);
+            let mut resolver = by_newton(collision, settings, AdditiveCcd::default()).unwrap();
+            let (x, report) = resolve_watched(&mut resolver, &scene, &target, "sheets");
+            assert!(report.converged && report.contact_rows > 20, "{report:?}");
+            x
+        });
+        let apart = ends[0].iter().zip(&ends[1]).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(apart < 1e-4, "{apart}");
+        assert!(ends[0][0].z < ends[0][ends[0].len() / 2].z, "they changed places");
     }
 }
 
@@ -64,10 +108,13 @@ fn newton_and_gradient_descent_reach_the_same_minimum() {
 fn sheets_that_change_places_never_intersect_on_the_way() {
     let scene = Scene::two_sheets(4, 0.04);
     let target = scene.swapped();
-    for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
+    let (eq_8, ipc) = (BarrierParams::default(), BarrierParams::ipc());
+    for (name, mut params, settings) in
+        [("fast", Params::fast(), &eq_8), ("paper", Params::paper(), &eq_8), ("ipc", Params::paper(), &ipc)]
+    {
         params.solver.stop.max_steps = Some(60);
         let collision = scene.collision_scene(params);
-        let mut resolver = by_newton(collision, BarrierParams::default(), AdditiveCcd::default()).unwrap();
+        let mut resolver = by_newton(collision, settings.clone(), AdditiveCcd::default()).unwrap();
         let (x, report) = resolve_watched(&mut resolver, &scene, &target, name);
         assert!(report.contact_rows > 10, "{name}: they never met: {report:?}");
         let middle = x.len() / 4;

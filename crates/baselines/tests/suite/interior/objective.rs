@@ -1,13 +1,19 @@
 //! The log-barrier objective against finite differences.
 
 use crate::common::{Draw, Scene, with_candidates};
-use bowknot_baselines::barrier::{BarrierParams, Derivatives, Objective};
+use bowknot_baselines::barrier::{BarrierForm, BarrierParams, Derivatives, Objective};
 use bowknot_baselines::twoway::constraints::EdgeReference;
 use bowknot_baselines::twoway::geometry::{PairKind, Point, Vector};
 use bowknot_baselines::twoway::{Params, TrustRegionSearch};
 
 #[test]
 fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
+    for form in [BarrierForm::Paper, BarrierForm::Ipc] {
+        compare_gradient(form);
+    }
+}
+
+fn compare_gradient(form: BarrierForm) {
     let mut scene = Scene::heap(0.006);
     let mut params = Params::fast();
     params.contact.delta = Some(0.01);
@@ -22,8 +28,11 @@ fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
     let target: Vec<Point> = scene.x.iter().map(|p| p + 0.03 * draw.vector()).collect();
     let mut search = TrustRegionSearch::new(&collision);
     // Edges are measured against a start where they were shorter than now.
-    let barrier = BarrierParams { edge_stiffness: 50.0, ..BarrierParams::default() };
+    let barrier = BarrierParams { form, edge_stiffness: 50.0, ..BarrierParams::default() };
     let mut objective = Objective::new(&collision, barrier).unwrap();
+    if form == BarrierForm::Ipc {
+        objective.set_strength(2e5);
+    }
     let mut start = with_candidates(&collision, &mut search, &scene.x, &target);
     start.x.iter_mut().for_each(|p| *p = Point::from(0.85 * p.coords));
     objective.begin(&collision, &start);
@@ -33,6 +42,7 @@ fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
     for kind in PairKind::ALL {
         assert!(contacts.iter().any(|c| c.kind == kind), "no {kind:?} within range");
     }
+    assert_eq!(contacts.iter().any(|c| c.mollifier.fades()), form == BarrierForm::Ipc);
     assert!(objective.long_edges(&state.x).count() > 10);
     let mut derivatives = Derivatives::default();
     objective.derivatives(&collision, &state, &state.x, &contacts, &mut derivatives);

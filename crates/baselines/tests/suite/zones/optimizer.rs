@@ -3,7 +3,7 @@ use crate::common::Scene;
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{Params, ResolveInput, Resolver};
-use bowknot_baselines::zones::{ImpactZones, ZoneParams, ZoneSolver};
+use bowknot_baselines::zones::{ImpactZones, ZoneGoal, ZoneParams, ZoneSolver};
 
 fn zones(scene: &Scene, solver: ZoneSolver) -> ImpactZones {
     ImpactZones::new(scene.collision_scene(Params::fast()), ZoneParams { solver, ..ZoneParams::default() })
@@ -27,6 +27,33 @@ fn a_vertex_stops_at_its_contact_distance_above_a_triangle() {
         assert!((x[3] - expected).norm() < 0.02 * collision.lengths().delta, "{solver:?}: {}", x[3]);
         assert_eq!(x[..3], scene.x[..3]);
     }
+}
+
+#[test]
+fn as_published_a_vertex_that_meets_a_triangle_stops_along_its_normal() {
+    let scene = Scene::vertex_above_triangle(0.5);
+    let mut target = scene.x.clone();
+    target[3] += Vector::new(0.3, -0.1, -1.0);
+    let mut zones = zones(&scene, ZoneSolver::LinearSystem);
+    (zones.params.goal, zones.params.tolerance) = (ZoneGoal::ZeroVelocity, 1e-9);
+    let (x, outcome) = solve_clear(&mut zones, &scene, &target, &[]);
+    assert!(outcome.converged && outcome.steps == 1, "{outcome:?}");
+    // Nothing of its way down remains, and all of its way along the triangle.
+    let expected = Point::new(target[3].x, target[3].y, 0.5);
+    assert!((x[3] - expected).norm() < 1e-12, "{}", x[3]);
+
+    // Two sheets of equal masses that meet go on together, with the mean of their velocities.
+    let scene = Scene::two_sheets(3, 0.05);
+    let n = scene.x.len() / 2;
+    let target: Vec<Point> =
+        (0..2 * n).map(|v| scene.x[v] + if v < n { 0.3 } else { 0.0 } * Vector::z()).collect();
+    let mut zones = self::zones(&scene, ZoneSolver::LinearSystem);
+    (zones.params.goal, zones.params.tolerance) = (ZoneGoal::ZeroVelocity, 1e-9);
+    zones.params.max_sweeps = 5000;
+    let (x, outcome) = solve_clear(&mut zones, &scene, &target, &[]);
+    assert!(outcome.converged, "{outcome:?}");
+    let off = (0..2 * n).map(|v| (x[v] - scene.x[v] - 0.15 * Vector::z()).norm()).fold(0.0, f64::max);
+    assert!(off < 1e-6, "{off}");
 }
 
 #[test]
