@@ -17,6 +17,7 @@ const QUICK: &[(&str, u32)] = &[
     ("convergence", 13),
     ("table-1", 40),
     ("table-2", 160),
+    ("table-2-full", 20),
     ("defaults", 60),
     ("switches", 60),
     ("barrier", 26),

@@ -92,6 +92,15 @@ struct Arguments {
     /// Its number of time steps.
     #[arg(long, hide = true, default_value_t = 1)]
     frames: usize,
+    /// Its time step [s].
+    #[arg(long, hide = true, default_value_t = 0.01)]
+    dt: f64,
+    /// The folder of a run that is continued for some seconds.
+    #[arg(long, hide = true)]
+    folder: Option<PathBuf>,
+    /// These seconds.
+    #[arg(long, hide = true, default_value_t = 60.0)]
+    seconds: f64,
 }
 
 fn main() -> ExitCode {
@@ -138,6 +147,10 @@ fn run(arguments: &Arguments) -> Result<()> {
         return list();
     }
     rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;
+    if let ("simulate", Some(folder)) = (arguments.name.as_str(), &arguments.folder) {
+        let Arguments { of, scale, frames, dt, seconds, .. } = arguments;
+        return process::continue_run((of, *scale), *frames, *dt, *seconds, folder);
+    }
     if arguments.name == "simulate" {
         return process::print_run(&arguments.of, arguments.scale, arguments.frames);
     }

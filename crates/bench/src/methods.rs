@@ -158,7 +158,7 @@ impl Setting {
 
     /// Time limit of a solve [s].
     pub fn limit(&self, size: Size) -> f64 {
-        size.pick(self.limit.unwrap_or(4.0), 2.0, 1.0)
+        size.pick(self.limit.unwrap_or(4.0), 0.5, 1.0)
     }
 
     /// A key that distinguishes its measurements from those of other settings.

@@ -2,11 +2,14 @@
 //! command, or by a `bowknot` of another commit.
 
 use anyhow::{Context, Result, ensure};
+use bowknot::run::{self, RunOptions};
 use bowknot::simulator::{StepSeconds, peak_memory_bytes};
 use bowknot::{Scene, Simulator};
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
+use std::time::{Duration, Instant};
 use std::{env, fs, process};
 
 /// What is simulated.
@@ -77,6 +80,56 @@ impl Case {
         fs::remove_dir_all(&folder).with_context(|| format!("cannot remove {}", folder.display()))?;
         Ok(ProcessRun { bytes: summary.peak_memory_bytes, vertices: summary.vertices, steps })
     }
+}
+
+/// A part of a run that is continued until it is at its end, and judged.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// A built-in scene.
+    pub scene: &'static str,
+    pub scale: f64,
+    /// Number of time steps of the whole run.
+    pub frames: usize,
+    /// Time step [s].
+    pub dt: f64,
+    /// Longest time of this part [s].
+    pub seconds: f64,
+}
+
+impl Part {
+    /// Computes it in another process of this command; `folder` holds the run.
+    pub fn run(&self, folder: &Path) -> Result<()> {
+        let output = Command::new(env::current_exe()?)
+            .args(["simulate", "--of", self.scene])
+            .args(["--scale", &self.scale.to_string()])
+            .args(["--frames", &self.frames.to_string()])
+            .args(["--threads", &rayon::current_num_threads().to_string()])
+            .args(["--dt", &self.dt.to_string()])
+            .args(["--seconds", &self.seconds.to_string()])
+            .arg("--folder")
+            .arg(folder)
+            .output()
+            .context("cannot start another process of this command")?;
+        ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        Ok(())
+    }
+}
+
+/// The work of another process of this command for a [`Part`]: begins or continues the run in `folder`.
+pub fn continue_run(of: (&str, f64), frames: usize, dt: f64, seconds: f64, folder: &Path) -> Result<()> {
+    let deadline = Instant::now() + Duration::from_secs_f64(seconds.max(0.0));
+    let sets = [
+        format!("simulation.dt={dt}"),
+        format!("simulation.frames={frames}"),
+        "output.formats=[\"pc2\"]".to_owned(),
+    ];
+    let scene = Scene::builtin(of.0, of.1)?.with_sets(&sets)?;
+    let resume = folder.join("summary.json").exists();
+    let options = RunOptions { out: folder.to_owned(), resume, check: true, ..RunOptions::default() };
+    run::run(&scene, &options, &mut |_| {
+        if Instant::now() < deadline { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    })?;
+    Ok(())
 }
 
 /// The entries of `summary.json` that are used.

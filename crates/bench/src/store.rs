@@ -61,6 +61,23 @@ impl Store {
         Ok(cell.value)
     }
 
+    /// Notes in a folder that this commit measures in it.
+    pub fn note_commit(&self, folder: &Path) -> Result<()> {
+        fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+        let mut commits = noted(folder)?;
+        if !commits.contains(&self.commit) {
+            commits.push(self.commit.clone());
+        }
+        let path = folder.join(COMMITS);
+        fs::write(&path, commits.join("\n")).with_context(|| format!("cannot write {}", path.display()))
+    }
+
+    /// Counts the commits that measured in a folder among those asked for.
+    pub fn use_commits(&self, folder: &Path) -> Result<()> {
+        self.commits.borrow_mut().extend(noted(folder)?);
+        Ok(())
+    }
+
     /// The commits of the measurements asked for since the last call.
     pub fn take_commits(&self) -> Vec<String> {
         std::mem::take(&mut *self.commits.borrow_mut()).into_iter().collect()
@@ -71,6 +88,18 @@ impl Store {
         let plain = |c: char| if c.is_ascii_alphanumeric() || "/.-=+".contains(c) { c } else { '_' };
         self.folder.join(format!("{}.json", key.chars().map(plain).collect::<String>()))
     }
+}
+
+/// The file in a folder that names the commits which have measured in it, one per line.
+const COMMITS: &str = "commits.txt";
+
+fn noted(folder: &Path) -> Result<Vec<String>> {
+    let path = folder.join(COMMITS);
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    Ok(text.lines().map(str::to_owned).collect())
 }
 
 #[cfg(test)]

@@ -28,6 +28,7 @@ mod sweeps;
 mod switches;
 mod table_1;
 mod table_2;
+mod table_2_full;
 mod tolerance;
 
 use crate::figure::Figure;
@@ -45,6 +46,7 @@ pub const ALL: &[&dyn Figure] = &[
     &convergence::Convergence,
     &table_1::Table1,
     &table_2::Table2,
+    &table_2_full::Table2Full,
     &defaults::Defaults,
     &switches::Switches,
     &barrier::Barrier,

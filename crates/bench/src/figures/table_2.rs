@@ -10,17 +10,17 @@ use bowknot::Scene;
 pub struct Table2;
 
 /// A row of the paper's table.
-struct Row {
-    scene: &'static str,
+pub(super) struct Row {
+    pub scene: &'static str,
     /// Time step [s]; none: the scene's own.
-    time_step: Option<f64>,
+    pub time_step: Option<f64>,
     /// Scale, and number of time steps, which lead into contact.
-    scale: f64,
+    pub scale: f64,
     frames: usize,
     /// The paper's steps per time step, and its seconds per time step of the collision stage on a GPU: mean
     /// and largest.
-    steps: [f64; 2],
-    seconds: [f64; 2],
+    pub steps: [f64; 2],
+    pub seconds: [f64; 2],
 }
 
 const fn row(scene: &'static str, scale: f64, frames: usize, steps: [f64; 2], seconds: [f64; 2]) -> Row {
@@ -31,7 +31,7 @@ const fn funnel(rate: f64, frames: usize, steps: [f64; 2], seconds: [f64; 2]) ->
     Row { time_step: Some(1.0 / rate), ..row("funnel", 0.2, frames, steps, seconds) }
 }
 
-const ROWS: [Row; 15] = [
+pub(super) const ROWS: [Row; 15] = [
     row("needle", 0.4, 40, [46.0, 1304.0], [0.036, 1.942]),
     row("blade", 0.15, 30, [55.0, 779.0], [0.267, 4.463]),
     funnel(20.0, 20, [27.0, 675.0], [0.087, 2.161]),
@@ -59,7 +59,7 @@ impl Figure for Table2 {
     }
 
     fn question(&self) -> &'static str {
-        "Whole simulations into contact, on small meshes to limit the time; `docs/scenes.md` has the scenes \
+        "Whole simulations into contact, on small meshes to limit the time; `table-2-full` has the scenes \
          at the paper's size. `fast`, and `paper` with at most 2 s per call. All time steps count, also \
          those before contact. Small meshes take fewer steps because motions span fewer edges. The paper's \
          seconds are those of a GPU, for 25 to 70 thousand vertices."
