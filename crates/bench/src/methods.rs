@@ -23,12 +23,13 @@ type Built = Result<Box<dyn Method>>;
 /// A method by name: its parameters, and the function that builds it.
 pub struct Entry {
     pub name: &'static str,
-    /// What it does not do that `fast` does; empty: nothing.
+    /// What it does not do of the problem as stated; empty: nothing.
     pub lacks: &'static str,
     params: fn() -> Params,
     build: fn(CollisionScene) -> Built,
 }
 
+const HALF_OF_FOLDS: &str = "half of the distance in sharp folds";
 const NO_LIMITS: &str = "edge limits";
 const NO_DISTANCE: &str = "edge limits, contact distance";
 
@@ -44,8 +45,8 @@ const fn lacking(name: &'static str, lacks: &'static str, build: fn(CollisionSce
 
 /// All of them.
 pub const METHODS: &[Entry] = &[
-    Entry { name: "fast", lacks: "", params: Params::fast, build: two_way },
-    Entry { name: "quick", lacks: "", params: Params::quick, build: two_way },
+    Entry { name: "fast", lacks: HALF_OF_FOLDS, params: Params::fast, build: two_way },
+    Entry { name: "quick", lacks: HALF_OF_FOLDS, params: Params::quick, build: two_way },
     variant("paper", two_way),
     Entry { name: "paper, active rows", lacks: "", params: active_rows, build: two_way },
     lacking("log barrier", NO_LIMITS, |p| log_barrier(p, BarrierParams::default())),

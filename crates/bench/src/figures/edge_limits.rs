@@ -26,6 +26,7 @@ impl Figure for EdgeLimits {
     fn run(&self, bench: &Bench) -> Result<Report> {
         let scale = bench.size.pick(0.4, 0.2, 0.15);
         let frames = bench.size.pick(40, 20, 14);
+        let limit = bench.size.pick(5.0, 0.2, 5.0);
         let mut table = Table::new([
             "preset",
             "edge_limits",
@@ -46,7 +47,7 @@ impl Figure for EdgeLimits {
                 let sets = [
                     format!("contact.preset={preset}"),
                     format!("contact.edges={edges}"),
-                    "solver.stop.max_seconds=5".to_owned(),
+                    format!("solver.stop.max_seconds={limit}"),
                 ];
                 let scene = Scene::builtin("needle", scale)?.with_sets(&sets)?;
                 let done = simulate(bench, &format!("edge-limits/{preset}-{edges}"), &scene, frames, 10)?;

@@ -91,8 +91,9 @@ impl Figure for Table2 {
                 if !bench.has_time() {
                     break;
                 }
+                let limit = bench.size.pick(2.0, 0.1, 2.0);
                 let mut sets =
-                    vec![format!("contact.preset={preset}"), "solver.stop.max_seconds=2".to_owned()];
+                    vec![format!("contact.preset={preset}"), format!("solver.stop.max_seconds={limit}")];
                 sets.extend(row.time_step.map(|dt| format!("simulation.dt={dt}")));
                 let scene = Scene::builtin(row.scene, row.scale)?.with_sets(&sets)?;
                 let dt = scene.simulation.dt;
