@@ -108,7 +108,7 @@ impl Bench {
     pub fn has_time(&self) -> bool {
         let seconds = self.size.pick(FULL_SECONDS, 60, 15);
         // All quick figures together have ten minutes; recordings and figures that began late take the rest.
-        let late = self.size != Size::Full && self.run_timer.elapsed() > Duration::from_secs(8 * 60);
+        let late = self.size != Size::Full && self.run_timer.elapsed() > Duration::from_secs(9 * 60);
         let left = self.figure_timer.get().elapsed() < Duration::from_secs(seconds) && !late;
         if !left {
             self.out_of_time.set(true);

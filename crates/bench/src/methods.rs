@@ -31,6 +31,7 @@ pub struct Entry {
 
 const HALF_OF_FOLDS: &str = "half of the distance in sharp folds";
 const NO_LIMITS: &str = "edge limits";
+const BARRIER: &str = "edge limits, the contact distance where something presses";
 const NO_DISTANCE: &str = "edge limits, contact distance";
 
 /// A method that replaces one part of `paper`.
@@ -49,9 +50,9 @@ pub const METHODS: &[Entry] = &[
     Entry { name: "quick", lacks: HALF_OF_FOLDS, params: Params::quick, build: two_way },
     variant("paper", two_way),
     Entry { name: "paper, active rows", lacks: "", params: active_rows, build: two_way },
-    lacking("log barrier", NO_LIMITS, |p| log_barrier(p, BarrierParams::default())),
-    lacking("IPC", NO_LIMITS, |p| ipc(p, BarrierParams::ipc())),
-    lacking("IPC, own range", "edge limits, the same contact distance", |p| {
+    lacking("log barrier", BARRIER, |p| log_barrier(p, BarrierParams::default())),
+    lacking("IPC", BARRIER, |p| ipc(p, BarrierParams::ipc())),
+    lacking("IPC, own range", "edge limits, the contact distance", |p| {
         let params = BarrierParams::ipc_with_own_range(&p);
         ipc(p, params)
     }),

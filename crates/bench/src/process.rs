@@ -124,7 +124,11 @@ pub fn continue_run(of: (&str, f64), frames: usize, dt: f64, seconds: f64, folde
         "output.formats=[\"pc2\"]".to_owned(),
     ];
     let scene = Scene::builtin(of.0, of.1)?.with_sets(&sets)?;
-    let resume = folder.join("summary.json").exists();
+    let resume = folder.join("checkpoint/state.npz").exists();
+    if !resume && folder.exists() {
+        // What a process has left that was killed before its first checkpoint.
+        fs::remove_dir_all(folder).with_context(|| format!("cannot remove {}", folder.display()))?;
+    }
     let options = RunOptions { out: folder.to_owned(), resume, check: true, ..RunOptions::default() };
     run::run(&scene, &options, &mut |_| {
         if Instant::now() < deadline { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }

@@ -7,16 +7,17 @@ use bowknot::{Scene, Simulator};
 use std::path::Path;
 use std::process::Command;
 
-/// Scenes into contact: name, scale, time steps.
-const SCENES: [(&str, f64, usize); 8] = [
-    ("needle", 0.15, 16),
-    ("stack", 0.1, 40),
-    ("tube", 0.15, 90),
-    ("reef-knot", 0.1, 50),
-    ("dress", 0.08, 8),
-    ("mat", 0.1, 120),
-    ("hair", 0.05, 40),
-    ("sand", 0.1, 40),
+/// Scenes into contact: name, scale, time steps with `fast` and with `paper`, which at rest takes all of its steps for
+/// `mat`, two minutes in all.
+const SCENES: [(&str, f64, [usize; 2]); 8] = [
+    ("needle", 0.15, [16, 16]),
+    ("stack", 0.1, [40, 40]),
+    ("tube", 0.15, [90, 90]),
+    ("reef-knot", 0.1, [50, 50]),
+    ("dress", 0.08, [8, 8]),
+    ("mat", 0.1, [180, 120]),
+    ("hair", 0.05, [40, 40]),
+    ("sand", 0.1, [40, 40]),
 ];
 
 /// A figure whose table has steps and searches of methods. Solves that fail may have reached their time
@@ -27,7 +28,7 @@ const FIGURE: &str = "impact-zones";
 fn counts_are_those_that_were_accepted() {
     let mut lines = vec!["what,two-way steps,searches,pairs,contact rows,edge rows,active rows".to_owned()];
     for (name, scale, frames) in SCENES {
-        for preset in ["fast", "paper"] {
+        for (preset, frames) in ["fast", "paper"].into_iter().zip(frames) {
             lines.push(format!("{name} {preset},{}", of_scene(name, scale, frames, preset)));
         }
     }

@@ -6,7 +6,7 @@
 use crate::body_pairs::by_bodies;
 use crate::error::CheckError;
 use crate::judge::Judge;
-use crate::primitives::{Scene, closest_points, gather, pair_kind};
+use crate::primitives::{Scene, closest_points, gather};
 use crate::report::{PairClass, PathHit, PathOptions, PathReport};
 use crate::sweep::Sweep;
 use crate::walk::Meeting;
@@ -66,7 +66,7 @@ impl Judge {
         let looks = scene.all_pairs(self, &Meeting, |class, elements, sides, looks: &mut Looks| {
             let (start, end) = (gather(x0, sides), gather(x1, sides));
             looks.count += 1;
-            if let Some(time) = Sweep::new(pair_kind(class), &start, &end).hit() {
+            if let Some(time) = Sweep::new(class.kind(), &start, &end).hit() {
                 looks.hits.push(Hit { class, elements, time });
             }
         });
@@ -111,7 +111,7 @@ impl Judge {
         let &Hit { class, elements, time } = hit;
         let sides = self.sides(class, elements);
         let (start, end) = (gather(x0, sides), gather(x1, sides));
-        let at_time = Sweep::new(pair_kind(class), &start, &end).points(time);
+        let at_time = Sweep::new(class.kind(), &start, &end).points(time);
         let places = match class {
             PairClass::VertexHalfSpace => self.half_space_places(elements, &at_time[0]).0,
             _ => closest_points(class, &at_time).0,

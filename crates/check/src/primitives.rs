@@ -5,7 +5,7 @@ use crate::judge::Judge;
 use crate::report::PairClass;
 use crate::tree::{self, Item, MovingBox, OBSTACLE, STILL, Tree};
 use crate::walk::{Keep, walk};
-use bowknot_geometry::{PairKind, Point};
+use bowknot_geometry::Point;
 use rayon::prelude::*;
 
 /// A primitive at its place in the order of a tree.
@@ -154,18 +154,7 @@ pub(super) fn pairs<const A: usize, const B: usize, const K: usize, R: Default +
     })
 }
 
-/// How [`bowknot_geometry`] calls a class of pairs that can be measured; edge-triangle pairs cannot.
-pub(super) fn pair_kind(class: PairClass) -> PairKind {
-    match class {
-        PairClass::EdgeEdge | PairClass::EdgeTriangle => PairKind::EdgeEdge,
-        PairClass::VertexTriangle => PairKind::VertexTriangle,
-        PairClass::VertexEdge => PairKind::VertexEdge,
-        PairClass::VertexVertex => PairKind::VertexVertex,
-        PairClass::VertexHalfSpace => PairKind::VertexHalfSpace,
-    }
-}
-
-/// The points of both sides in [`PairKind`] order; unused places repeat the first.
+/// The points of both sides in [`bowknot_geometry::PairKind`] order; unused places repeat the first.
 pub(super) fn gather(x: &[Point], sides: [&[u32]; 2]) -> [Point; 4] {
     let mut points = [x[sides[0][0] as usize]; 4];
     for (point, &v) in points.iter_mut().zip(sides[0].iter().chain(sides[1])) {
@@ -176,6 +165,6 @@ pub(super) fn gather(x: &[Point], sides: [&[u32]; 2]) -> [Point; 4] {
 
 /// Closest points of either side, and their distance.
 pub(super) fn closest_points(class: PairClass, points: &[Point; 4]) -> ([Point; 2], f64) {
-    let closest = closest(pair_kind(class), points);
+    let closest = closest(class.kind(), points);
     (closest.places(), closest.distance())
 }

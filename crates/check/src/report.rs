@@ -1,6 +1,6 @@
 //! What the judge says.
 
-use bowknot_geometry::Point;
+use bowknot_geometry::{PairKind, Point};
 #[cfg(feature = "serde")]
 use serde::Serialize;
 use std::fmt;
@@ -25,6 +25,17 @@ pub enum PairClass {
 }
 
 impl PairClass {
+    /// How [`bowknot_geometry`] calls pairs of this class that can be measured; edge-triangle pairs cannot.
+    pub const fn kind(self) -> PairKind {
+        match self {
+            PairClass::EdgeEdge | PairClass::EdgeTriangle => PairKind::EdgeEdge,
+            PairClass::VertexTriangle => PairKind::VertexTriangle,
+            PairClass::VertexEdge => PairKind::VertexEdge,
+            PairClass::VertexVertex => PairKind::VertexVertex,
+            PairClass::VertexHalfSpace => PairKind::VertexHalfSpace,
+        }
+    }
+
     /// Names of the two sides.
     pub const fn sides(self) -> [&'static str; 2] {
         match self {

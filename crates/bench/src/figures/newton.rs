@@ -32,6 +32,7 @@ impl Figure for Newton {
     fn run(&self, bench: &Bench) -> Result<Report> {
         let scale = bench.size.pick(0.4, 0.2, 0.15);
         let frames = bench.size.pick(40, 20, 14);
+        let limit = bench.size.pick(1.0, 0.2, 1.0);
         let mut table = Table::new([
             "preset",
             "newton_iterations",
@@ -60,7 +61,7 @@ impl Figure for Newton {
                         format!("simulation.newton_iterations={newton}"),
                         "solver.newton.step_tolerance=0".to_owned(),
                         format!("simulation.collision_every={every}"),
-                        "solver.stop.max_seconds=1".to_owned(),
+                        format!("solver.stop.max_seconds={limit}"),
                     ];
                     let scene = Scene::builtin("needle", scale)?.with_sets(&sets)?;
                     let key = format!("newton/{preset}-{newton}-{every}");

@@ -98,7 +98,8 @@ impl Figure for Table2 {
                 let scene = Scene::builtin(row.scene, row.scale)?.with_sets(&sets)?;
                 let dt = scene.simulation.dt;
                 let key = format!("table-2/{preset}-{}-{}", row.scene, 1.0 / dt);
-                let done = simulate(bench, &key, &scene, row.frames, 10)?;
+                let frames = bench.size.pick(row.frames, row.frames / 2, row.frames);
+                let done = simulate(bench, &key, &scene, frames, 10)?;
                 let steps: Vec<f64> = done.steps.iter().map(|&s| s as f64).collect();
                 let vertices = done.samples.last().map_or(0, |s| s.positions.len());
                 intersections += done.intersections();

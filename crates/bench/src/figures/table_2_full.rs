@@ -63,17 +63,18 @@ impl Figure for Table2Full {
             let scene = Scene::builtin(row.scene, scale)?.with_sets(&sets)?;
             let frames = bench.size.pick(scene.simulation.frames, 5, 2);
             let rate = 1.0 / scene.simulation.dt;
-            let folder = bench.out().join("table-2-full").join(format!("{}-{rate:.0}", row.scene));
+            let notes = bench.out().join("table-2-full").join(format!("{}-{rate:.0}", row.scene));
+            let folder = notes.join("run");
             let is_done = read(&folder).is_ok_and(|summary| summary.frames >= frames);
             if !is_done && bench.has_time() {
                 let limit = bench.size.pick(FULL_SECONDS, 60, 15) as f64;
-                bench.store.note_commit(&folder)?;
+                bench.store.note_commit(&notes)?;
                 let seconds = limit - bench.figure_seconds();
                 RunPart { scene: row.scene, scale, frames, dt: scene.simulation.dt, seconds }.run(&folder)?;
             }
             let Ok(summary) = read(&folder) else { continue };
             let (Some(means), Some(max)) = (&summary.mean, &summary.max) else { continue };
-            bench.store.use_commits(&folder)?;
+            bench.store.use_commits(&notes)?;
             println!("  {} 1/{rate:.0}: {} of {frames} time steps", row.scene, summary.frames);
             let collision = collision_seconds(&folder)?;
             let vertices = summary.info.vertices;

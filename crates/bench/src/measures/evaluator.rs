@@ -1,6 +1,6 @@
 //! Measures the quality of a result.
 
-use super::nonnegative;
+use super::nonnegative::{self, Row};
 use super::statement::{About, Constraint, Statement};
 use crate::case::CollisionCase;
 use anyhow::Result;
@@ -129,7 +129,8 @@ impl<'a> CaseEvaluator<'a> {
             let share = if matches!(constraint.about, About::Edge(_)) { ACTIVE[1] } else { ACTIVE[0] };
             constraint.value <= share * constraint.length
         };
-        let rows: Vec<_> = constraints.iter().filter(active).map(|constraint| constraint.row(x)).collect();
+        let row = |&Constraint { vertices, gradients, .. }: &Constraint| Row { vertices, gradients };
+        let rows: Vec<Row> = constraints.iter().filter(active).map(row).collect();
         nonnegative::residual(&rows, &weights, (0..x.len()).map(way).collect(), self.iterations)
     }
 }

@@ -9,12 +9,31 @@
 //! raises it: stopping early overestimates the residual.
 
 use bowknot::geometry::Vector;
-use bowknot::lcp::Row;
 
 /// The solve stops when the projected gradient is this share of that at lambda = 0.
 const TOLERANCE: f64 = 1e-8;
 /// Largest ratio of the chopped to the free gradient; above it multipliers are freed from their bounds.
 const PROPORTION: f64 = 1.0;
+
+/// A row of J.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Its vertices; one may be named several times.
+    pub vertices: [u32; 4],
+    pub gradients: [Vector; 4],
+}
+
+impl Row {
+    /// Its diagonal of J W J^T.
+    fn diagonal(&self, weights: &[f64]) -> f64 {
+        let of_place = |k: usize| {
+            let same = (0..4).filter(|&other| self.vertices[other] == self.vertices[k]);
+            let sum: Vector = same.map(|other| self.gradients[other]).sum();
+            weights[self.vertices[k] as usize] * self.gradients[k].dot(&sum)
+        };
+        (0..4).map(of_place).sum()
+    }
+}
 
 /// The residual d + W J^T lambda after at most `iterations`, each a product with A. `weights` are inverse
 /// masses, 0 for vertices that cannot move; `wanted` is d.
@@ -40,11 +59,10 @@ impl<'a> System<'a> {
     fn new(rows: &'a [Row], weights: &'a [f64]) -> Self {
         let mut system = Self { rows: Vec::new(), scales: Vec::new(), weights };
         for row in rows {
-            let mut row_of_one = *row;
-            // The rows are made by the measures, so that every vertex has a weight.
-            if row_of_one.prepare(weights).is_ok() && row_of_one.inverse_diagonal > 0.0 {
+            let diagonal = row.diagonal(weights);
+            if diagonal > 0.0 {
                 system.rows.push(row);
-                system.scales.push(row_of_one.inverse_diagonal.sqrt());
+                system.scales.push(1.0 / diagonal.sqrt());
             }
         }
         system

@@ -13,7 +13,6 @@ use crate::case::CollisionCase;
 use anyhow::Result;
 use bowknot::check::{Judge, NearPair, PairClass};
 use bowknot::geometry::{PairKind, Point, Vector};
-use bowknot::lcp::Row;
 use bowknot::proximity::Pair;
 use bowknot::twoway::{CallInput, CollisionScene};
 use std::cell::RefCell;
@@ -41,15 +40,6 @@ pub struct Constraint {
     pub value: f64,
     /// The contact distance, or the limit [m].
     pub length: f64,
-}
-
-impl Constraint {
-    /// The row of its linearization at `x`.
-    pub fn row(&self, x: &[Point]) -> Row {
-        let at_origin: f64 =
-            (0..4).map(|k| self.gradients[k].dot(&x[self.vertices[k] as usize].coords)).sum();
-        Row::new(self.vertices, self.gradients, self.value - at_origin)
-    }
 }
 
 /// A limited edge.
@@ -174,7 +164,7 @@ impl<'a> Statement<'a> {
     }
 
     fn contact_distance(&self, class: PairClass, elements: [u32; 2], vertices: [u32; 4]) -> f64 {
-        let (model, kind) = (self.scene.model(), kind(class));
+        let (model, kind) = (self.scene.model(), class.kind());
         let mut delta = self.scene.spacing().of(model, kind, &Pair { elements, vertices }).delta;
         let component = |place: usize| model.vertex_component()[vertices[place] as usize];
         if kind != PairKind::VertexHalfSpace && component(0) == component(kind.side_a()) {
@@ -214,17 +204,6 @@ fn limited_edges(case: &CollisionCase, scene: &CollisionScene, call: &CallInput)
         (moves && sigma < f64::INFINITY).then_some(LimitedEdge { vertices, limit, rest, start })
     };
     topology.edges.iter().filter_map(limited).collect()
-}
-
-/// The kind of a class of near pairs, which has no edge-triangle pairs.
-fn kind(class: PairClass) -> PairKind {
-    match class {
-        PairClass::EdgeEdge | PairClass::EdgeTriangle => PairKind::EdgeEdge,
-        PairClass::VertexTriangle => PairKind::VertexTriangle,
-        PairClass::VertexEdge => PairKind::VertexEdge,
-        PairClass::VertexVertex => PairKind::VertexVertex,
-        PairClass::VertexHalfSpace => PairKind::VertexHalfSpace,
-    }
 }
 
 /// The vertices of both sides; unused places repeat the first.

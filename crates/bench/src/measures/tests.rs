@@ -138,7 +138,9 @@ fn multipliers_equal_those_of_the_reference() {
             })
             .collect();
         rows.push(rows[0]);
-        let ours = nonnegative::residual(&rows, &weights, wanted.clone(), 1500);
+        let own = |&Row { vertices, gradients, .. }: &Row| nonnegative::Row { vertices, gradients };
+        let ours =
+            nonnegative::residual(&rows.iter().map(own).collect::<Vec<_>>(), &weights, wanted.clone(), 1500);
 
         lcp::prepare_rows(&mut rows, &weights).expect("weights of all nodes");
         let problem = lcp::LcpProblem::of_rows(&weights, &rows).expect("a sound problem");
