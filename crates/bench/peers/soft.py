@@ -186,8 +186,8 @@ def section(records, versions, load_before):
             {_range([r["max_stretch"] for r in theirs])} by rapier's. After {FALL_S:g} s in free fall Bowknot is off by
             {fall(mine)} mm, rapier by {fall(theirs)} mm. The speed on the slope is off by
             {slope(mine, "slope_speed_share")} and {slope(theirs, "slope_speed_share")}, its growth in the second half,
-            without the landing, by {slope(mine, "slope_growth_share")} and {slope(theirs, "slope_growth_share")}. The stack still moves at the end in {moving["ours"]} of Bowknot's runs and in
-            {moving["theirs"]} of rapier's.""",
+            without the landing, by {slope(mine, "slope_growth_share")} and {slope(theirs, "slope_growth_share")}. The stack still
+            moves at the end in {moving["ours"]} of Bowknot's runs and in {moving["theirs"]} of rapier's.""",
         caveats="""Rapier computes in single precision and its cloth is of springs, so its material cannot equal
             Bowknot's; the stiffness along a side does. Its own default, springs of 30 Hz, is a row as well. Its
             constructors make a sheet as thick as its edges are long, which keeps layers apart and makes piles thick;

@@ -64,8 +64,9 @@ pub struct Scene {
 
 pub const NAMES: [&str; 6] = ["ball", "sheets", "ribbon", "slope", "stack", "pinch"];
 
-/// The scene `name`, or nothing; `size` is the number of vertices along a side of a sheet or a cube. `skin` is the thickness that surfaces have to each side, from the distance of
-/// neighbors [m]: what is to be in contact starts 1 mm farther apart.
+/// The scene `name`, or nothing; `size` is the number of vertices along a side of a sheet or a cube. `skin` is the
+/// thickness that surfaces have to each side, from the distance of neighbors [m]: what is to be in contact starts 1 mm
+/// farther apart.
 pub fn named(name: &str, size: Option<usize>, skin: &dyn Fn(f64) -> f64) -> Option<Scene> {
     Some(match name {
         "ball" => drape(size.unwrap_or(51), 1.0, 1, 0.12),
