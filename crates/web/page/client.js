@@ -6,10 +6,14 @@ class Client {
     constructor(on) {
         this.on = on;
         this.worker = null;
+        // A fault on one of the worker's threads leaves the worker waiting for it.
+        const name = `bowknot-${crypto.randomUUID?.() ?? Math.random()}`;
+        this.faults = new BroadcastChannel(name);
+        this.faults.onmessage = ({ data }) => this.worker && on.failed({ message: data });
     }
 
     start() {
-        this.worker = new Worker("worker.js", { type: "module" });
+        this.worker = new Worker(`worker.js?faults=${this.faults.name}`, { type: "module" });
         this.worker.onmessage = ({ data }) => this.on[data.is](data);
         this.worker.onerror = (event) => {
             event.preventDefault();

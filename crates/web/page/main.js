@@ -1,5 +1,5 @@
 // Puts the page together. `document.body.dataset` tells tools how far it is: `state` (loading, ready, failed), `scene`,
-// `frame`, `judged`, `intersections`, `rate`, `held` (the vertex that the pointer holds).
+// `frame`, `judged`, `intersections`, `rate`, `held` (the vertex that the pointer holds), `threads`.
 //
 // The address takes what to show: #scene=drape&theme=light&pause=1
 "use strict";
@@ -84,6 +84,10 @@ function rate() {
 }
 
 const client = new Client({
+    loaded({ threads }) {
+        state.threads = threads;
+        at("threads").textContent = threads;
+    },
     opened(layout) {
         page.opened = page.opening;
         mark(page.opened);

@@ -1,11 +1,15 @@
 // Computes: makes a simulation of a scene, and one time step after the other. Nothing here touches the page.
 
-import init, { Scene, Simulator, boundsOf, takeWarnings } from "./bowknot.js";
 import { sceneWith } from "./file.js";
 
 /** Name of the pin by which the pointer holds a vertex. */
 const HAND = "the pointer";
 
+/** Most threads: more of them gain little on meshes of this size. */
+const THREADS = 8;
+
+/** The module, see `load`. */
+let bowknot = null;
 let simulator = null;
 let playing = false;
 /** How many times as stiff as by its scene all is. */
@@ -25,10 +29,23 @@ let pending = false;
 const AHEAD = 2;
 
 const say = (message, transfer = []) => postMessage(message, transfer);
-const loaded = init();
+const loaded = load();
 /** Told without a wait: timers of workers wait for some milliseconds at least. */
 const soon = new MessageChannel();
 soon.port1.onmessage = () => awaited();
+
+/** Loads the module: the one with threads if the page is isolated and the folder has it, else the one without. */
+async function load() {
+    const threads = globalThis.crossOriginIsolated ? Math.min(navigator.hardwareConcurrency, THREADS) : 1;
+    const threaded = threads > 1 ? await import("./threads/bowknot.js").catch(() => null) : null;
+    bowknot = threaded ?? (await import("./bowknot.js"));
+    await bowknot.default();
+    if (threaded) {
+        bowknot.tellFaultsOn(new URL(location.href).searchParams.get("faults"));
+        await bowknot.initThreadPool(threads);
+    }
+    say({ is: "loaded", threads: threaded ? threads : 1 });
+}
 
 function layout() {
     const { bodies, planes, timeStep, contactDistance } = simulator;
@@ -39,14 +56,14 @@ function layout() {
 }
 
 function open(scene, { stiffness, friction }) {
-    const next = new Simulator(scene);
+    const next = new bowknot.Simulator(scene);
     next.setMeasured(false);
     if (stiffness !== 1) next.scaleStiffness(stiffness);
     stiff = stiffness;
     if (friction !== null) next.setFrictionOfAll(friction);
     simulator?.free();
     [simulator, hand, judged, intersections] = [next, null, 0, 0];
-    say({ is: "opened", name: scene.name, warnings: takeWarnings(), ...layout() });
+    say({ is: "opened", name: scene.name, warnings: bowknot.takeWarnings(), ...layout() });
 }
 
 /** The body of a vertex, and its number in the body's mesh. */
@@ -77,7 +94,7 @@ function step() {
     const { step: frame, time, two_way_steps: twoWaySteps } = statistics;
     const milliseconds = { step: stepped - began, judge: ended - stepped };
     say({ is: "frame", frame, time, positions, judged, intersections, words: verdict.intersections, twoWaySteps, milliseconds }, [positions.buffer]);
-    const warnings = takeWarnings();
+    const warnings = bowknot.takeWarnings();
     if (warnings.length > 0) say({ is: "warned", warnings });
     return ended - began;
 }
@@ -100,11 +117,12 @@ function awaited() {
 
 const actions = {
     /** A built-in scene, with settings of its keys. */
-    open: ({ scene, scale, sets, ...settings }) => open(Scene.builtin(scene, scale).withSets(sets), settings),
+    open: ({ scene, scale, sets, ...settings }) => open(bowknot.Scene.builtin(scene, scale).withSets(sets), settings),
     /** A scene around the mesh of a file, whose bytes are given. */
     file: ({ name, bytes, role, sets, ...settings }) => {
-        const [low, high] = [0, 3].map((k) => Array.from(boundsOf(name, bytes).subarray(k, k + 3)));
-        open(Scene.fromToml(sceneWith(name, role, low, high), { [name]: bytes }).withSets(sets), settings);
+        const [low, high] = [0, 3].map((k) => Array.from(bowknot.boundsOf(name, bytes).subarray(k, k + 3)));
+        const scene = bowknot.Scene.fromToml(sceneWith(name, role, low, high), { [name]: bytes });
+        open(scene.withSets(sets), settings);
     },
     play: () => {
         if (playing) return;

@@ -43,5 +43,9 @@ pub fn simulation(error: SimulationError) -> Thrown {
 /// Makes exceptions of panics, which would otherwise end as `unreachable` without a word. What panicked stays borrowed,
 /// and refuses to be used again.
 pub fn throw_panics() {
-    std::panic::set_hook(Box::new(|panic| wasm_bindgen::throw_val(internal(panic))));
+    std::panic::set_hook(Box::new(|panic| {
+        #[cfg(feature = "threads")]
+        crate::threads::tell(&panic.to_string());
+        wasm_bindgen::throw_val(internal(panic))
+    }));
 }

@@ -9,10 +9,11 @@
 //! | `scene.rs`, `meshes.rs` | scenes; meshes in place of the files that a browser does not have |
 //! | `simulator.rs`, `drive.rs` | simulations; what is changed between time steps |
 //! | `resolver.rs` | the collision stage |
+//! | `threads.rs` | what panics on another thread (feature `threads`) |
 //! | `types.ts` | types of the objects that functions return |
 //!
-//! There is one thread: rayon runs everything on the thread that calls. Results have the bits of the native library,
-//! since they depend on no number of threads.
+//! Without the feature `threads` rayon runs everything on the thread that calls; with it JavaScript starts the threads by
+//! `initThreadPool`. Results have the bits of the native library, since they depend on no number of threads.
 
 // For other targets than the web there is nothing here, see the manifest.
 #![cfg(target_family = "wasm")]
@@ -28,13 +29,15 @@ mod options;
 mod resolver;
 mod scene;
 mod simulator;
+#[cfg(feature = "threads")]
+mod threads;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = include_str!("types.ts");
 
-/// Runs when the module has been loaded.
+/// Runs when the module has been loaded, on each thread.
 #[wasm_bindgen(start)]
 fn start() {
     error::throw_panics();

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import functools
-import http.server
+import contextlib
 import os
+import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,29 +15,36 @@ from browser import Browser, program
 TARGET = Path(os.environ.get("BOWKNOT_TARGET", "target"))
 
 
-class Handler(http.server.SimpleHTTPRequestHandler):
-    extensions_map = {
-        **http.server.SimpleHTTPRequestHandler.extensions_map,
-        ".wasm": "application/wasm",
-        ".js": "text/javascript",
-    }
-
-    def log_message(self, *_: object) -> None:
-        pass
+sys.path.insert(0, str(Path(__file__).parent.parent))
+import serve
 
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "long: left out by `cargo xtask web --test --quick`, as CI runs it")
 
 
-@pytest.fixture(scope="session")
-def address() -> Iterator[str]:
+@contextlib.contextmanager
+def served(handler: type[serve.Handler]) -> Iterator[str]:
     """Where the folders `web` and `npm` of the target folder are served."""
-    handler = functools.partial(Handler, directory=TARGET)
-    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+    quiet = type("Quiet", (handler,), {"log_message": lambda *_: None})
+    with serve.server(TARGET, quiet, 0) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
+
+
+@pytest.fixture(scope="session")
+def address() -> Iterator[str]:
+    """The address of a server that isolates no page."""
+    with served(serve.Handler) as address:
+        yield address
+
+
+@pytest.fixture(scope="session")
+def isolated() -> Iterator[str]:
+    """The address of a server whose pages may have threads."""
+    with served(serve.IsolatingHandler) as address:
+        yield address
 
 
 @pytest.fixture(scope="session")

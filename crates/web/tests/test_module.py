@@ -35,11 +35,18 @@ await module.default();
 """
 
 
-def run(browser: Browser, address: str, code: str, package: str = "web/bowknot.js") -> object:
-    """What code in the page returns; `module` is the package."""
-    if not (browser.evaluate("location.href") or "").startswith(address):
+def run(browser: Browser, address: str, code: str, package: str = "web/bowknot.js", in_worker: bool = False) -> object:
+    """What code in the page, or in a worker of it, returns; `module` is the package."""
+    if not (browser.evaluate("location.href") or "").startswith(f"{address}/npm"):
         browser.open(f"{address}/npm/bowknot/README.md")
-    script = f"(async () => {{ {MODULE.replace('PATH', json.dumps(f'/{package}'))} {code} }})()"
+    script = f"(async () => {{ {MODULE.replace('PATH', json.dumps(f'{address}/{package}'))} {code} }})()"
+    if in_worker:
+        source = json.dumps(f"postMessage(await {script})")
+        script = f"""new Promise((done, failed) => {{
+            const worker = new Worker(URL.createObjectURL(new Blob([{source}], {{ type: "text/javascript" }})), {{ type: "module" }});
+            worker.onmessage = ({{ data }}) => done(data);
+            worker.onerror = (event) => failed(new Error(event.message));
+        }})"""
     return browser.evaluate(script)
 
 
@@ -48,7 +55,21 @@ def run(browser: Browser, address: str, code: str, package: str = "web/bowknot.j
 def test_positions_are_those_of_the_command(
     browser: Browser, address: str, tmp_path: Path, scene: str, scale: float, frames: int, preset: str
 ) -> None:
-    out = tmp_path / "run"
+    compared(browser, address, tmp_path, scene, scale, frames, preset)
+
+
+def compared(
+    browser: Browser,
+    address: str,
+    folder: Path,
+    scene: str,
+    scale: float,
+    frames: int,
+    preset: str,
+    threaded: str | None = None,
+) -> None:
+    """Asserts that a scene has the bits of the command; `threaded` is a package with threads, run in a worker."""
+    out = folder / "run"
     arguments = (
         f"run {scene} --scale {scale} --frames {frames} --set contact.preset={preset} --format npz --out".split()
     )
@@ -57,11 +78,14 @@ def test_positions_are_those_of_the_command(
     text = run(
         browser,
         address,
-        f"""const scene = module.Scene.builtin("{scene}", {scale}).withSets(["contact.preset={preset}"]);
+        f"""{"await module.initThreadPool(3);" if threaded else ""}
+        const scene = module.Scene.builtin("{scene}", {scale}).withSets(["contact.preset={preset}"]);
         const simulator = new module.Simulator(scene);
         for (let k = 0; k < {frames}; k++) simulator.step();
         const count = Math.max(...simulator.bodies.map((body) => body.end));
         return toBase64(simulator.positions.slice(0, 3 * count));""",
+        threaded or "web/bowknot.js",
+        threaded is not None,
     )
     web = np.frombuffer(base64.b64decode(str(text)), dtype="<f8").reshape(-1, 3)
     # Frames end with the corners of squares that stand for half-spaces.

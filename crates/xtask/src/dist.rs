@@ -5,7 +5,7 @@
 //! tries them, and writes their checksums.
 
 use crate::workspace::{cargo, succeed, target_folder};
-use crate::{blender, bowknot, licenses, web, wheel};
+use crate::{blender, bowknot, licenses, nightly, web, wheel};
 use std::fs;
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -59,13 +59,14 @@ fn build(root: &Path, target: &Path, what: Parts) -> Result<PathBuf> {
         command = target.join("shipped").join(command.file_name().unwrap_or_default());
     }
     pages(&command, &parts)?;
-    licenses::write(root, &PACKAGES, licenses::HOST, &parts)?;
+    licenses::write(root, &PACKAGES, &[], licenses::HOST, &parts)?;
     let mut pack = Command::new("python3");
     pack.arg(root.join("crates/xtask/dist/pack.py")).args(["--version", env!("CARGO_PKG_VERSION")]);
     pack.arg("--target").arg(target).arg("--out").arg(&out);
     match what {
         Parts::All => {
-            web::build(root, target, false)?;
+            let threads = nightly::has_sources(root);
+            web::build(root, target, web::Options { quick: false, threads })?;
             // With the wheel, which it builds.
             let extension = blender::pack_and_test(root, target, Vec::new(), false)?;
             pack.arg("--others").arg("--blender").arg(extension);

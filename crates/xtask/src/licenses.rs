@@ -16,8 +16,9 @@ const BEGINNINGS: [&str; 5] = ["license", "licence", "copying", "notice", "unlic
 /// The target of what this machine runs.
 pub const HOST: &str = "host-tuple";
 
-/// Writes the licenses of what is linked into packages that are built together for a target into a folder.
-pub fn write(root: &Path, packages: &[&str], target: &str, folder: &Path) -> Result<()> {
+/// Writes the licenses of what is linked into packages that are built together for a target, with more features than their
+/// own, into a folder.
+pub fn write(root: &Path, packages: &[&str], features: &[&str], target: &str, folder: &Path) -> Result<()> {
     let mut metadata = cargo(root, "metadata --format-version 1 --locked --filter-platform");
     let metadata: Value = serde_json::from_str(&output(metadata.arg(target))?)?;
     let mut crates = BTreeMap::new();
@@ -28,17 +29,18 @@ pub fn write(root: &Path, packages: &[&str], target: &str, folder: &Path) -> Res
             crates.insert(format!("{} v{}", text("name"), text("version")), package);
         }
     }
-    let linked = linked(root, packages, target)?;
+    let linked = linked(root, packages, features, target)?;
     let texts = texts(linked.iter().filter_map(|name| Some((name.as_str(), *crates.get(name)?))))?;
     fs::create_dir_all(folder)?;
     fs::write(folder.join(FILE), texts)
 }
 
 /// The crates in the tree of these packages, as `NAME vVERSION`.
-fn linked(root: &Path, packages: &[&str], target: &str) -> Result<BTreeSet<String>> {
+fn linked(root: &Path, packages: &[&str], features: &[&str], target: &str) -> Result<BTreeSet<String>> {
     // Crates of builds and tests are not linked. What macros write is.
     let mut tree = cargo(root, "tree --locked --edges normal --prefix none --format {p} --target");
     tree.arg(target).args(packages.iter().flat_map(|package| ["--package", package]));
+    tree.args(features.iter().flat_map(|feature| ["--features", feature]));
     let words = |line: &str| line.split(' ').take(2).collect::<Vec<_>>().join(" ");
     Ok(output(&mut tree)?.lines().map(words).collect())
 }

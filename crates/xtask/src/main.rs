@@ -63,7 +63,7 @@ cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
        cargo xtask twins
        cargo xtask wheel [--test]
        cargo xtask blender [--test] [WHEEL..]
-       cargo xtask web [--test] [--quick]
+       cargo xtask web [--test] [--quick] [--threads]
        cargo xtask dist [--check | --built]
        cargo xtask publish
        cargo xtask notebooks [NAME..]
@@ -124,6 +124,7 @@ web       build the page of crates/web into target/web, which any static server 
 target/npm
           --test        open the page in Chromium and compare with the command; needs Python with venv
           --quick       without optimization of the module as a whole, and without the long tests: what CI does
+          --threads     a module with threads as well; needs the nightly compiler with the component rust-src
 dist      build all that a release uploads, into target/dist: the command with completions, manual pages and licenses, the
           libraries for C, the wheel, the extension for Blender, the page and the npm packages, checksums; needs what the
           steps above need
@@ -177,8 +178,10 @@ fn main() -> ExitCode {
         ["dist"] => dist::run(&workspace::root(), dist::Parts::All),
         ["dist", "--check"] => dist::run(&workspace::root(), dist::Parts::Programs),
         ["dist", "--built"] => dist::run(&workspace::root(), dist::Parts::Built),
-        ["web", options @ ..] if options.iter().all(|option| ["--test", "--quick"].contains(option)) => {
-            web::run(&workspace::root(), options.contains(&"--test"), options.contains(&"--quick"))
+        ["web", words @ ..] if words.iter().all(|word| ["--test", "--quick", "--threads"].contains(word)) => {
+            let has = |word| words.contains(&word);
+            let options = web::Options { quick: has("--quick"), threads: has("--threads") };
+            web::run(&workspace::root(), has("--test"), options)
         }
         ["notebooks", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             notebooks::run(&workspace::root(), names)

@@ -20,3 +20,11 @@ pub fn is_installed(root: &Path) -> bool {
     let status = cargo(root).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())
 }
+
+/// Whether there are the sources of its standard library.
+pub fn has_sources(root: &Path) -> bool {
+    let mut rustc = Command::new("rustup");
+    rustc.current_dir(root).args(["run", "nightly", "rustc", "--print", "sysroot"]);
+    let output = rustc.output().map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
+    output.is_ok_and(|sysroot| Path::new(&sysroot).join("lib/rustlib/src/rust/library/Cargo.lock").exists())
+}

@@ -4,7 +4,7 @@
 //! version of the crate of that name in `Cargo.lock`. The viewer of the page is that of `crates/report`.
 
 use crate::workspace::{cargo, succeed, target_folder};
-use crate::{bowknot, licenses, venv};
+use crate::{bowknot, licenses, nightly, venv};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -38,17 +38,34 @@ const VIEWER: [&str; 8] = [
 /// Vector instructions, which all browsers have had since 2023, and a stack like that of the command's threads.
 const FLAGS: &str = "-C target-feature=+simd128 -C link-arg=-zstack-size=8388608";
 
+/// And with threads: memory that they share, of at most 4 GB, and what the start of each of them needs.
+const THREADS: &str = "-C target-feature=+atomics -C link-arg=--shared-memory -C link-arg=--import-memory \
+     -C link-arg=--max-memory=4294967296 -C link-arg=--export=__wasm_init_tls -C link-arg=--export=__tls_size \
+     -C link-arg=--export=__tls_align -C link-arg=--export=__tls_base";
+
+/// The folder of the page and of the package `bowknot` with that module.
+const THREADED: &str = "threads";
+
 /// The variable of the environment that names the command to compare with.
 pub const COMMAND: &str = "BOWKNOT_COMMAND";
 
 /// Most bytes of the page, each of its files compressed by gzip.
 const MOST: usize = 3_000_000;
 
-/// Builds, and tests as well if asked to. `quick`: without the optimization of the whole, and not all of the tests.
-pub fn run(root: &Path, with_tests: bool, quick: bool) -> ExitCode {
+/// What is built.
+#[derive(Clone, Copy)]
+pub struct Options {
+    /// Without the optimization of the whole, and not all of the tests.
+    pub quick: bool,
+    /// A module with threads as well, which takes the nightly compiler.
+    pub threads: bool,
+}
+
+/// Builds, and tests as well if asked to.
+pub fn run(root: &Path, with_tests: bool, options: Options) -> ExitCode {
     let target = target_folder(root);
-    let done = build(root, &target, quick).and_then(|()| match with_tests {
-        true => test(root, &target, quick),
+    let done = build(root, &target, options).and_then(|()| match with_tests {
+        true => test(root, &target, options.quick),
         false => Ok(()),
     });
     match done {
@@ -61,14 +78,14 @@ pub fn run(root: &Path, with_tests: bool, quick: bool) -> ExitCode {
 }
 
 /// Builds the page into `target/web` and the packages into `target/npm`, and prints how large they are.
-pub fn build(root: &Path, target: &Path, quick: bool) -> Result<()> {
+pub fn build(root: &Path, target: &Path, options: Options) -> Result<()> {
     // Macros and build scripts of the release profile are those of the command.
-    let profile = if quick { "release" } else { "wasm" };
-    let mut build = cargo(root, "build --package bowknot-web --profile");
-    // Flags of the environment would take the place of these.
-    build.args([profile, "--target", TARGET]).env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", FLAGS);
-    succeed(&mut build)?;
-    let wasm = target.join(TARGET).join(profile).join("bowknot_web.wasm");
+    let profile = if options.quick { "release" } else { "wasm" };
+    let wasm = compile(cargo(root, "build"), target, profile, FLAGS)?;
+    let threaded = match options.threads {
+        true => Some(compile_threads(root, &target.join(THREADED), profile)?),
+        false => None,
+    };
     let tool = bindgen(root, target)?;
     let (page, npm) = (target.join("web"), target.join("npm"));
     for folder in [&page, &npm] {
@@ -78,19 +95,67 @@ pub fn build(root: &Path, target: &Path, quick: bool) -> Result<()> {
     }
     write_page(root, &tool, &wasm, &page)?;
     write_packages(root, &tool, &wasm, &npm)?;
+    if let Some(threaded) = &threaded {
+        write_threaded(&tool, threaded, &page.join(THREADED), &["--no-typescript"])?;
+        write_threaded(&tool, threaded, &npm.join("bowknot").join(THREADED), &[])?;
+    }
+    let features: &[&str] = if options.threads { &["bowknot-web/threads"] } else { &[] };
     for folder in [&page, &npm.join("bowknot"), &npm.join("bowknot-compat")] {
         for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
             fs::copy(root.join(license), folder.join(license))?;
         }
-        licenses::write(root, &["bowknot-web"], TARGET, folder)?;
+        licenses::write(root, &["bowknot-web"], features, TARGET, folder)?;
     }
-    let size = report(&page)?;
+    // A visitor loads one of the two modules.
+    let other = if threaded.is_some() { report(&page.join(THREADED))? } else { 0 };
+    let size = report(&page)? - other;
     report(&npm.join("bowknot"))?;
     report(&npm.join("bowknot-compat"))?;
     if size > MOST {
         return Err(Error::other(format!("the page takes {size} bytes compressed, more than {MOST}")));
     }
     Ok(())
+}
+
+/// Compiles the module and returns its file.
+fn compile(mut cargo: Command, target: &Path, profile: &str, flags: &str) -> Result<PathBuf> {
+    cargo
+        .args(["--package", "bowknot-web", "--profile", profile, "--target", TARGET, "--target-dir"])
+        .arg(target);
+    // Flags of the environment would take the place of these.
+    succeed(cargo.env_remove("CARGO_ENCODED_RUSTFLAGS").env("RUSTFLAGS", flags))?;
+    Ok(target.join(TARGET).join(profile).join("bowknot_web.wasm"))
+}
+
+/// The same with threads. The standard library that compilers come with has none on this target.
+fn compile_threads(root: &Path, target: &Path, profile: &str) -> Result<PathBuf> {
+    if !nightly::has_sources(root) {
+        return Err(Error::other(
+            "threads take the nightly compiler and the sources of its standard library: rustup toolchain install nightly \
+             --component rust-src",
+        ));
+    }
+    let mut cargo = nightly::cargo(root);
+    cargo.args(["build", "-Z", "build-std=std,panic_abort", "--features", "threads"]);
+    compile(cargo, target, profile, &format!("{FLAGS} {THREADS}"))
+}
+
+/// The module with threads. Bundlers take the folder that its workers import for the file in it; servers do not.
+fn write_threaded(tool: &Path, wasm: &Path, folder: &Path, options: &[&str]) -> Result<()> {
+    glue(tool, wasm, folder, options)?;
+    let mut files = Vec::new();
+    list(&folder.join("snippets"), &mut files)?;
+    let mut found = false;
+    for file in files.iter().filter(|file| file.extension().is_some_and(|end| end == "js")) {
+        let text = fs::read_to_string(file)?;
+        found |= text.contains("import('../../..')");
+        fs::write(file, text.replace("import('../../..')", "import('../../../bowknot.js')"))?;
+    }
+    if found {
+        Ok(())
+    } else {
+        Err(Error::other("wasm-bindgen-rayon imports the module in another way than it did"))
+    }
 }
 
 /// The page: its own files, the module, and the viewer of the report.

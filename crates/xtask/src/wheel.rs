@@ -54,7 +54,7 @@ pub fn build(command: &mut Command) -> Result<bool> {
     let root = command.get_current_dir().unwrap_or(Path::new("."));
     venv::ensure(&folder, &root.join(CRATE).join("tests/requirements.txt"))?;
     // Maturin takes files of this name into the wheel.
-    licenses::write(root, &["bowknot-python"], licenses::HOST, &root.join(CRATE))?;
+    licenses::write(root, &["bowknot-python"], &[], licenses::HOST, &root.join(CRATE))?;
     // Those of earlier builds.
     for wheel in command.get_args().last().map(Path::new).into_iter().flat_map(found) {
         std::fs::remove_file(wheel)?;
