@@ -11,6 +11,7 @@ from measure import Spread
 from setting import REPOSITORY, Unusable
 
 PAGE = REPOSITORY / "docs" / "benchmarks.md"
+README = REPOSITORY / "README.md"
 TABLES = REPOSITORY / "docs" / "benchmarks"
 WIDTH = 110
 BEGIN, END = "<!-- begin peers -->\n", "<!-- end peers -->\n"
@@ -91,7 +92,7 @@ it and for what the times include."""
 def ensure_clean():
     """Refuses a git tree with changes, so that the commit beside each result is the code."""
     command = ["git", "status", "--porcelain", "--", "."]
-    command += [f":(exclude){path.relative_to(REPOSITORY)}" for path in (PAGE, TABLES)]
+    command += [f":(exclude){path.relative_to(REPOSITORY)}" for path in (PAGE, TABLES, README)]
     done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=False)
     if done.returncode != 0 or done.stdout.strip():
         raise Unusable(
@@ -117,6 +118,7 @@ def publish(folders, names):
     for folder in folders.values():
         for table in folder.glob("peers-*.csv"):
             shutil.copyfile(table, TABLES / table.name)
+    print("`cargo run --release -p bowknot-bench -- age` takes the results into the first section.")
 
 
 def sections_of(block, names):

@@ -1,6 +1,6 @@
 //! How old results are. Those that were measured before much of the solver changed are marked on their pages.
 
-use crate::{git, pages};
+use crate::{front, git, pages};
 use anyhow::{Context, Result};
 use std::collections::HashMap;
 use std::fs;
@@ -26,9 +26,10 @@ const SOLVER: [&str; 9] = [
 const PAGES: [&str; 4] = [pages::BENCHMARKS, pages::GALLERY, pages::GPU_RESULTS, pages::STABILITY];
 
 /// What follows the commits of stale results.
-const MARK: &str = " (*stale*)";
+pub const MARK: &str = " (*stale*)";
 
-/// Marks stale results on all pages of the repository at `root`, and takes the mark from others.
+/// Marks stale results on all pages of the repository at `root`, takes the mark from others, and writes the rows of the
+/// first section anew.
 pub fn mark_pages(root: &Path) -> Result<()> {
     let mut ages = Ages { root, known: HashMap::new() };
     for page in PAGES {
@@ -40,7 +41,7 @@ pub fn mark_pages(root: &Path) -> Result<()> {
             println!("{page}");
         }
     }
-    Ok(())
+    front::rewrite(root)
 }
 
 /// Which commits are stale, asked of git once each.

@@ -7,13 +7,13 @@ use crate::chart;
 use crate::figure::{Figure, Part, Report};
 use crate::files::write;
 use crate::machine::WITH_CHANGES;
-use crate::pages::{BENCHMARKS, FILMS, GALLERY, STABILITY};
-use crate::{git, page};
+use crate::pages::{BENCHMARKS, FILMS, GALLERY, README, STABILITY};
+use crate::{front, git, page};
 use anyhow::{Context, Result, bail, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const FOLDER: &str = "docs/benchmarks";
+pub const FOLDER: &str = "docs/benchmarks";
 
 /// The documentation in a repository.
 #[derive(Debug)]
@@ -33,7 +33,8 @@ impl Docs {
     /// # Errors
     /// If the tree is not clean, or is no git tree.
     pub fn ensure_clean(&self) -> Result<()> {
-        let exclude = [BENCHMARKS, FILMS, FOLDER, GALLERY, STABILITY].map(|path| format!(":(exclude){path}"));
+        let exclude =
+            [BENCHMARKS, FILMS, FOLDER, GALLERY, README, STABILITY].map(|path| format!(":(exclude){path}"));
         let mut arguments = vec!["status", "--porcelain", "--", "."];
         arguments.extend(exclude.iter().map(String::as_str));
         let Some(changes) = git::output(&self.repository, &arguments) else {
@@ -51,8 +52,8 @@ impl Docs {
     /// CSV; the charts as SVG. `order` has the names of all figures in the order of the index.
     ///
     /// # Errors
-    /// If the tree is not clean, if something was measured in a tree that was not, or if a file cannot be
-    /// written.
+    /// If the tree is not clean, if something was measured in a tree that was not, if nothing was measured, or if a
+    /// file cannot be written.
     pub fn publish(
         &self,
         figure: &dyn Figure,
@@ -68,6 +69,11 @@ impl Docs {
             figure.page(),
             figure.name()
         );
+        let measured = report.parts.iter().any(|part| match part {
+            Part::Table { table, .. } | Part::File { table, .. } => !table.is_empty(),
+            Part::Chart { .. } => false,
+        });
+        ensure!(measured, "{} is not written: nothing of {} was measured", figure.page(), figure.name());
         let path = self.repository.join(figure.page());
         let page = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         let page = if figure.on_page() {
@@ -93,7 +99,8 @@ impl Docs {
                 }
             }
         }
-        write(&path, &page)
+        write(&path, &page)?;
+        front::rewrite(&self.repository)
     }
 }
 

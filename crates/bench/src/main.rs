@@ -7,7 +7,7 @@
 //! | `figure` | the trait that they implement, and what they report |
 //! | `run`, `durations` | measuring a figure; how long that takes |
 //! | `docs`, `page`, `pages` | writing its results into docs/benchmarks and docs/benchmarks.md |
-//! | `age` | which results on the pages are stale |
+//! | `age`, `front` | which results on the pages are stale; the first section, from the tables of the others |
 //! | `bench`, `store`, `machine` | size, folder and time of a run; kept measurements; machine, commit |
 //! | `record`, `case`, `targets` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
@@ -32,6 +32,7 @@ mod durations;
 mod figure;
 mod figures;
 mod files;
+mod front;
 mod git;
 mod machine;
 mod measures;
@@ -63,7 +64,8 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "bowknot-bench")]
 struct Arguments {
-    /// A figure, `all`, `record` (collision problems as NPZ files), `list`, or `age` (marks stale results on the pages).
+    /// A figure, `all`, `record` (collision problems as NPZ files), `list`, or `age` (marks stale results on the pages and writes
+    /// the first section anew).
     name: String,
     /// Measures smaller scenes and writes to DIR alone.
     #[arg(long)]

@@ -108,7 +108,7 @@ fn block(page: &str, name: &str) -> Result<[usize; 2]> {
 }
 
 /// Breaks lines; keeps paragraphs.
-fn wrap(text: &str) -> String {
+pub fn wrap(text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for paragraph in text.split("\n\n") {
         let mut line = String::new();

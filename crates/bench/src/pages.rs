@@ -2,6 +2,8 @@
 
 /// Figures and tables, with an index of them.
 pub const BENCHMARKS: &str = "docs/benchmarks.md";
+/// What users read first: three of its rows.
+pub const README: &str = "README.md";
 /// The cases of [`crate::stability`].
 pub const STABILITY: &str = "docs/stability.md";
 /// The runs of [`crate::figures::gallery`], and the folder of their films.

@@ -143,7 +143,7 @@ impl ProblemSet {
         let done = folder.join("done.txt");
         if !done.exists() {
             println!("  recording {}", self.command(bench.size));
-            self.record(bench, &folder)?;
+            bench.recorded(|| self.record(bench, &folder))?;
         }
         let list = fs::read_to_string(&done).with_context(|| format!("cannot read {}", done.display()))?;
         Ok(list.lines().map(|name| folder.join(name)).collect())

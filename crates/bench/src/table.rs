@@ -48,6 +48,10 @@ impl Table {
         self.rows.push(entries.into_iter().collect());
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
     /// Markdown with short numbers; columns of numbers are aligned to the right.
     pub fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));

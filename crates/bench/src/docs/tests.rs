@@ -43,7 +43,8 @@ fn example() -> Report {
     report(table)
 }
 
-const EMPTY_PAGE: &str = "# Benchmarks\n\n<!-- begin shown -->\n<!-- end shown -->\n\n\
+const FRONT: &str = "<!-- begin front -->\n<!-- end front -->\n";
+const EMPTY_PAGE: &str = "# Benchmarks\n\n<!-- begin front -->\n<!-- end front -->\n\n<!-- begin shown -->\n<!-- end shown -->\n\n\
     <!-- begin index -->\n| table | shows |\n|---|---|\n<!-- end index -->\n";
 
 /// A repository with one commit that holds a source file and a page without results.
@@ -51,6 +52,7 @@ fn repository() -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     write(&folder.path().join("crates/code.rs"), "fn main() {}\n").expect("a file");
     write(&folder.path().join(BENCHMARKS), EMPTY_PAGE).expect("a file");
+    write(&folder.path().join(README), FRONT).expect("a file");
     for arguments in [
         &["init", "--quiet"][..],
         &["add", "."],
@@ -90,6 +92,15 @@ fn nothing_is_written_from_a_dirty_tree() {
         assert_eq!(fs::read_to_string(folder.path().join(BENCHMARKS)).expect("a file"), EMPTY_PAGE);
         assert!(!folder.path().join(FOLDER).exists());
     }
+}
+
+#[test]
+fn empty_tables_are_not_published() {
+    let folder = repository();
+    let empty = report(Table::new(["method", "cpu_s"]));
+    let order = ["shown", "indexed"];
+    let refused = Docs::new(folder.path()).publish(&Example { on_page: true }, &empty, "Commit abc.", &order);
+    assert!(refused.expect_err("nothing was measured").to_string().contains("nothing of shown"));
 }
 
 #[test]

@@ -192,6 +192,9 @@ pub fn over_fast(compared: &[Compared], method: &str) -> Option<[f64; 2]> {
 
 /// `paper` and the barriers against `fast`; methods that are faster than `fast`, with their error.
 pub fn finding(compared: &[Compared]) -> String {
+    if compared.is_empty() {
+        return "not measured.".to_owned();
+    }
     let shown = |method: &str| {
         let [cpu, error] = over_fast(compared, method)?;
         Some(format!("{method} {} and {}", times(cpu), times(error)))

@@ -26,30 +26,42 @@ impl Figure for ContactsAlone {
     fn question(&self) -> &'static str {
         "Barriers and impact zones have no edge limits. With them, edges that they stretch to several times \
          their length would be part of their error. Here no method has edge limits (sigma infinite), and the \
-         problems have reference solutions of their own. Contact-unaware targets; all else as in \
+         problems have reference solutions of their own. All else as in `collision-error` and \
          `collision-error-unaware`."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
         let settings: Vec<Setting> = METHODS.iter().map(Setting::plain).collect();
         let names: Vec<&str> = METHODS.iter().map(|entry| entry.name).collect();
-        let compared = compared(bench, Targets::Unaware, &settings)?;
+        let both = [Targets::Unaware, Targets::Aware];
+        let mut compared = both.map(|_| Vec::new());
+        for (targets, compared) in both.into_iter().zip(&mut compared) {
+            *compared = self::compared(bench, targets, &settings)?;
+        }
+        let findings = both
+            .iter()
+            .zip(&compared)
+            .map(|(targets, compared)| format!("contact-{} targets: {}", targets.word(), finding(compared)));
+        let mut ratios = Table::new(RATIO_COLUMNS);
+        for (targets, compared) in both.iter().zip(&compared) {
+            add_ratios(&mut ratios, targets.word(), &against_fast(compared, &names));
+        }
         Ok(Report {
             finding: format!(
-                "CPU time and error as multiples of those of `fast`, geometric means over the scenes: {}",
-                finding(&compared)
+                "CPU time and error as multiples of those of `fast`, geometric means over the scenes; {}",
+                findings.collect::<Vec<_>>().join(" ")
             ),
             parts: vec![
                 Part::table(
                     format!("{}-ratios", self.name()),
                     "CPU time and error over those of `fast` without edge limits: geometric means over the \
                      scenes, smallest and largest",
-                    ratio_table(&against_fast(&compared, &names)),
+                    ratios,
                 ),
                 Part::table(
                     self.name(),
-                    "methods on contact-unaware targets without edge limits, by scene",
-                    table(&compared, |_| true),
+                    "methods without edge limits, by scene",
+                    table(&compared.concat(), |_| true),
                 ),
             ],
         })
@@ -68,24 +80,26 @@ pub fn compared(bench: &Bench, targets: Targets, settings: &[Setting]) -> Result
     on_cases(bench, scenes, by_scene, settings, 1, Against::Reference)
 }
 
-fn ratio_table(methods: &[OverFast]) -> Table {
-    let mut table = Table::new([
-        "method",
-        "cpu_ratio",
-        "cpu_ratio_min",
-        "cpu_ratio_max",
-        "error_ratio",
-        "error_ratio_min",
-        "error_ratio_max",
-        "problems",
-        "failed",
-        "met_rule",
-        "intersections",
-    ]);
+const RATIO_COLUMNS: [&str; 12] = [
+    "targets",
+    "method",
+    "cpu_ratio",
+    "cpu_ratio_min",
+    "cpu_ratio_max",
+    "error_ratio",
+    "error_ratio_min",
+    "error_ratio_max",
+    "problems",
+    "failed",
+    "met_rule",
+    "intersections",
+];
+
+fn add_ratios(table: &mut Table, targets: &str, methods: &[OverFast]) {
     for method in methods {
         let ratios = method.cpu.into_iter().chain(method.error).map(Entry::from);
         let counts = [method.problems, method.failed, method.met, method.intersections].map(Entry::from);
-        table.row([Entry::from(method.name.as_str())].into_iter().chain(ratios).chain(counts));
+        let names = [Entry::from(targets), Entry::from(method.name.as_str())];
+        table.row(names.into_iter().chain(ratios).chain(counts));
     }
-    table
 }

@@ -78,7 +78,11 @@ fn table(unaware: &[OverFast], aware: &[OverFast], lacks: bool) -> Table {
     let mut table = Table::new(header);
     for (unaware, aware) in unaware.iter().zip(aware) {
         let spread = |[mean, low, high]: [f64; 3]| -> Entry {
-            format!("{} ({} to {})", times(mean), times(low), times(high)).into()
+            if mean.is_finite() {
+                format!("{} ({} to {})", times(mean), times(low), times(high)).into()
+            } else {
+                "-".into()
+            }
         };
         let of_targets = |method: &OverFast| {
             let count = |number: usize| -> Entry { format!("{number} of {}", method.problems).into() };
