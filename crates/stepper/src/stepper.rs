@@ -5,6 +5,10 @@
 //! its own half-space. Half-spaces are convex, so no straight path of any vertex crosses, whatever the
 //! speeds, and a smaller alpha is always safe too. The isotropic bound is the paper's: no vertex moves by
 //! more than half of the smallest distance of its pairs.
+//!
+//! *Divide and Truncate* (Chen et al. 2026, arXiv 2604.15513) limits displacements by planes between near pairs
+//! as well. Here the width of the slab is certified with rounding, both sides keep a minimum separation, and
+//! a pair closer than rounding can resolve is frozen.
 
 use crate::rounding::Rounding;
 use crate::trust_regions::TrustRegions;

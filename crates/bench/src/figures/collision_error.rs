@@ -1,6 +1,6 @@
 //! Run time against error of the collision stage: every method and setting on the same problems.
 
-use crate::bench::Bench;
+use crate::bench::{Bench, Size};
 use crate::chart::{Axis, Chart, Mark, Series, Style, pareto_front};
 use crate::figure::{Figure, Part, Report};
 use crate::methods::{METHODS, Setting};
@@ -82,12 +82,17 @@ impl Figure for CollisionError {
     }
 }
 
+/// Number of problems of each scene.
+pub fn count(size: Size) -> usize {
+    size.pick(2, 2, 1)
+}
+
 /// Problems with these targets, solved by settings.
 pub fn compared(bench: &Bench, targets: Targets, settings: &[Setting]) -> Result<Vec<Compared>> {
     on_scenes(
         bench,
         targets.problem_sets(bench.size),
-        bench.size.pick(2, 2, 1),
+        count(bench.size),
         settings,
         bench.size.pick(3, 1, 1),
         Against::Reference,
