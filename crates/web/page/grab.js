@@ -4,13 +4,15 @@
 class Grab {
     /** `tell` gets { do: "grab" | "lead" | "release", .. } for the simulation. */
     constructor(viewer, tell) {
-        Object.assign(this, { viewer, tell, vertex: null });
+        // The pointer that holds it: other fingers may touch the page meanwhile.
+        Object.assign(this, { viewer, tell, vertex: null, pointer: null });
         this.end = new AbortController();
         const on = (target, name, action) => target.addEventListener(name, action, { signal: this.end.signal, capture: true });
         on(viewer.canvas, "pointerdown", (event) => this.take(event));
-        on(window, "pointermove", (event) => this.lead(event));
-        on(window, "pointerup", () => this.release());
-        on(window, "pointercancel", () => this.release());
+        const own = (action) => (event) => event.pointerId === this.pointer && action(event);
+        on(window, "pointermove", own((event) => this.lead(event)));
+        on(window, "pointerup", own(() => this.release()));
+        on(window, "pointercancel", own(() => this.release()));
     }
 
     ray(event) {
@@ -43,11 +45,12 @@ class Grab {
     }
 
     take(event) {
-        if (event.button !== 0 || !event.isPrimary) return;
+        if (event.button !== 0 || !event.isPrimary || this.vertex !== null) return;
         const hit = this.hit(this.ray(event));
         if (!hit) return;
         // The camera stays while a body is pulled.
         this.viewer.controls.enabled = false;
+        this.pointer = event.pointerId;
         this.vertex = hit.vertex;
         this.plane = hit.place;
         this.normal = this.viewer.camera.getWorldDirection(new L.Vector3());
@@ -55,15 +58,14 @@ class Grab {
     }
 
     lead(event) {
-        if (this.vertex === null) return;
         const { origin, direction } = this.ray(event).ray;
         const along = this.plane.clone().sub(origin).dot(this.normal) / direction.dot(this.normal);
         if (along > 0) this.tell({ do: "lead", target: origin.clone().addScaledVector(direction, along).toArray() });
     }
 
     release() {
-        if (this.vertex === null) return;
         this.vertex = null;
+        this.pointer = null;
         this.viewer.controls.enabled = true;
         this.tell({ do: "release" });
     }

@@ -82,6 +82,9 @@ def test_a_vertex_is_dragged(browser: Browser, address: str, pictures: Path) -> 
     after = browser.evaluate(place)
     browser.picture(pictures / "dragged.png")
     assert sum((a - b) ** 2 for a, b in zip(after, before, strict=True)) > 0.1**2, (before, after)
+    # A second finger lets nothing go.
+    browser.evaluate("window.dispatchEvent(new PointerEvent('pointerup', { pointerId: 77 }))")
+    assert browser.data("held") == vertex
     # The camera has not moved along.
     assert browser.evaluate("page.viewer.controls.enabled") is False
     browser.mouse("mouseReleased", x + 57, y - 152)

@@ -172,13 +172,25 @@ def stop(*_: object) -> None:
         current.close()
 
 
+@persistent
+def before_undo(scene: bpy.types.Scene, *_: object) -> None:
+    """Ends a bake that still reads the animation: an undo replaces the objects that it reads. Later ones know names alone."""
+    if running is not None and not running.waiting:
+        stop()
+        scene.bowknot.message = "Canceled by an undo: bake again"
+
+
 def register() -> None:
     bpy.app.handlers.load_pre.append(stop)
+    for handlers in (bpy.app.handlers.undo_pre, bpy.app.handlers.redo_pre):
+        handlers.append(before_undo)
 
 
 def unregister() -> None:
     stop()
     bpy.app.handlers.load_pre.remove(stop)
+    for handlers in (bpy.app.handlers.undo_pre, bpy.app.handlers.redo_pre):
+        handlers.remove(before_undo)
 
 
 def run(context: bpy.types.Context, *, resume: bool) -> Bake:

@@ -96,6 +96,11 @@ class _Baking:
         bake.finish(current)
         return self._end(current)
 
+    def cancel(self, context: bpy.types.Context) -> None:
+        """The window is closed, with the timer that would take the bake further."""
+        bake.stop()
+        context.window_manager.progress_end()
+
     def _end(self, done: bake.Bake) -> set[str]:
         self.report({"ERROR" if done.error is not None else "INFO"}, done.message)
         return {"CANCELLED" if done.error is not None else "FINISHED"}

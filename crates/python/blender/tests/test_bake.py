@@ -144,6 +144,23 @@ def test_cancel_and_resume_make_the_bits_of_a_whole_bake(scene, stop):
     assert caches(bpy.context.scene) == whole
 
 
+def test_an_undo_ends_a_bake_that_reads_the_animation(scene):
+    cloth = sheet(location=(0, 0, 0.6))
+    going = bake.begin(bpy.context, resume=False)
+    assert going.advance() and not going.waiting
+    bake.before_undo(scene)
+    assert bake.running is None and "undo" in scene.bowknot.message
+    assert not cloth.modifiers and scene.frame_current == scene.frame_start
+    # A later one leaves it: nothing of Blender is read any more.
+    going = bake.begin(bpy.context, resume=False)
+    while going.advance() and not going.waiting:
+        pass
+    bake.before_undo(scene)
+    assert bake.running is going
+    bake.stop()
+    assert bake.running is None and [m.type for m in cloth.modifiers] == ["MESH_CACHE", "TRIANGULATE"]
+
+
 def test_the_interface_bakes_in_the_background_and_cancels(scene):
     class Pressed(operators.BOWKNOT_OT_bake.__mro__[1]):
         """Stands for the operator, which Blender alone can make: there are no timers without its window."""

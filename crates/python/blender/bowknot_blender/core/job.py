@@ -52,6 +52,21 @@ def remove(folder: Path) -> None:
         folder.rmdir()
 
 
+class _Pins:
+    """The pins of a body, one per held vertex, and the rows of their places in its frames."""
+
+    def __init__(self, body: Body, names: list[str]) -> None:
+        self._frames = body.led_frames
+        self._rows = dict(zip(names, np.searchsorted(body.led, body.held_vertices())))
+
+    def lead(self, simulator: bowknot.Simulator, frame: int, share: float) -> None:
+        """Leads them to a place between a frame and the next one."""
+        if self._rows:
+            targets = _between(self._frames, frame, share)
+            for name, row in self._rows.items():
+                simulator.set_pin_targets(name, targets[row][None])
+
+
 class Job:
     """Makes the frames of a description and writes a cache per body into a folder.
 
@@ -106,7 +121,7 @@ class Job:
             raise StartIntersects(str(error), intersecting(description)) from error
         simulator.set_measured(False)
         names = iter(simulator.pins)
-        pins = [(body, [next(names) for _ in body.held()]) for body in description.bodies]
+        pins = [_Pins(body, [next(names) for _ in body.held()]) for body in description.bodies]
         if self._resume:
             self._restore(simulator)
         else:
@@ -143,7 +158,7 @@ class Job:
             for body in self.description.bodies
         }
 
-    def _frame(self, simulator: bowknot.Simulator, pins: list[tuple[Body, list[str]]], steps: int) -> bool:
+    def _frame(self, simulator: bowknot.Simulator, pins: list[_Pins], steps: int) -> bool:
         """Makes the time steps of one frame; False if it was canceled meanwhile."""
         unsolved = 0
         for step in range(1, steps + 1):
@@ -153,12 +168,8 @@ class Job:
             for obstacle in self.description.obstacles:
                 if len(obstacle.frames) > 1:
                     simulator.set_obstacle_targets(obstacle.name, _between(obstacle.frames, self.done, share))
-            for body, names in pins:
-                if names:
-                    rows = np.searchsorted(body.led, body.held_vertices())
-                    targets = _between(body.led_frames, self.done, share)[rows]
-                    for name, target in zip(names, targets):
-                        simulator.set_pin_targets(name, target[None])
+            for held in pins:
+                held.lead(simulator, self.done, share)
             unsolved += not simulator.step().solved
         self.unsolved += unsolved
         return True
