@@ -98,7 +98,7 @@ const RATIO_COLUMNS: [&str; 12] = [
 ];
 
 fn add_ratios(table: &mut Table, targets: &str, methods: &[OverFast]) {
-    for method in methods {
+    for method in methods.iter().filter(|method| method.problems > 0) {
         let ratios = method.cpu.into_iter().chain(method.error).map(Entry::from);
         let counts = [method.problems, method.failed, method.met, method.intersections].map(Entry::from);
         let names = [Entry::from(targets), Entry::from(method.name.as_str())];
