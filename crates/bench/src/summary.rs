@@ -8,6 +8,10 @@ use crate::solve::{Against, Solved, compare};
 use crate::table::{Entry, Table, largest, mean, smallest};
 use anyhow::Result;
 
+/// Smallest error that counts, in mean edge lengths: a tenth of the tolerance of most methods. Ratios of smaller ones, such
+/// as of problems whose targets are reached, would be those of roundings.
+const LEAST_ERROR: f64 = 1e-3;
+
 /// Results of one setting on the problems of a scene: means over the problems, unless a field says otherwise.
 #[derive(Clone, Debug)]
 pub struct Summary {
@@ -23,6 +27,8 @@ pub struct Summary {
     pub excess: f64,
     /// Distance to the target [m].
     pub distance: f64,
+    /// Smallest error that counts [m].
+    pub least_error: f64,
     pub steps: f64,
     /// Largest number of steps.
     pub most_steps: f64,
@@ -145,6 +151,7 @@ impl Summary {
             violation: of(&|s| s.quality.violation),
             excess: of(&|s| s.quality.stretch_violation.max(0.0)) * edge,
             distance: of(&|s| s.quality.distance),
+            least_error: LEAST_ERROR * edge,
             steps: of(&|s| s.steps as f64),
             most_steps: largest(&all(&|s| s.steps as f64)),
             searches: of(&|s| s.searches as f64),
@@ -165,13 +172,15 @@ impl Summary {
 
     /// The distance to the reference solution [m]. Without references: the root of the sum of squares of the
     /// stationarity residual and the violations of contacts and edge limits, because each alone can be small
-    /// while the others are large.
+    /// while the others are large. At least [`LEAST_ERROR`].
     pub fn error(&self, referenced: bool) -> f64 {
-        if referenced {
+        let error = if referenced {
             self.distance_to_reference.unwrap_or(f64::NAN)
         } else {
             self.stationarity.hypot(self.violation).hypot(self.excess)
-        }
+        };
+        // Unlike `max`, it keeps what is not a number.
+        if error < self.least_error { self.least_error } else { error }
     }
 
     /// Method and change.
