@@ -15,7 +15,7 @@ pub const FULL_SECONDS: u64 = 17 * 60;
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
-    /// For docs/benchmarks: each figure within 20 minutes.
+    /// For docs/benchmarks: each figure within 20 minutes, beside the recording of its problems.
     Full,
     /// A preview: all figures together within 10 minutes.
     Quick,

@@ -132,8 +132,8 @@ fn list() -> Result<()> {
     );
     text += &line("record", &problems);
     text += &format!(
-        "\nquick, full: about the processor time of a first run with one thread; full is a limit, that of \
-         record a\nguess. Problems and measurements are kept, so that later runs take less. A figure stops \
+        "\nquick, full: about the processor time of a first run with one thread; full is a limit without the \
+         recording\nof problems, that of record a guess. Problems and measurements are kept, so that later runs take less. A figure stops \
          measuring after {}\nminutes and says so; run again, it goes on.\n",
         bench::FULL_SECONDS / 60
     );

@@ -10,6 +10,8 @@ pub struct OverFast {
     pub cpu: [f64; 3],
     pub error: [f64; 3],
     pub problems: usize,
+    /// Problems of scenes that have reference solutions.
+    pub referenced: usize,
     pub failed: usize,
     pub met: usize,
     pub intersections: usize,
@@ -28,6 +30,7 @@ pub fn against_fast(compared: &[Compared], methods: &[&str]) -> Vec<OverFast> {
             cpu: spread(ratios(compared, method, fast, |s, _| s.cpu)),
             error: spread(ratios(compared, method, fast, |s, referenced| s.error(referenced))),
             problems: count(|s| s.problems),
+            referenced: count(|s| if s.distance_to_reference.is_some() { s.problems } else { 0 }),
             failed: count(|s| s.failed),
             met: count(|s| s.met),
             intersections: count(|s| s.intersections),

@@ -2,7 +2,7 @@
 
 /// Figures and tables, with an index of them.
 pub const BENCHMARKS: &str = "docs/benchmarks.md";
-/// What users read first: three of its rows.
+/// What users read first: some of its rows.
 pub const README: &str = "README.md";
 /// The cases of [`crate::stability`].
 pub const STABILITY: &str = "docs/stability.md";

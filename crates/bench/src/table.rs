@@ -131,6 +131,11 @@ pub fn times(ratio: f64) -> String {
     format!("{}x", short(ratio))
 }
 
+/// Ratios as `3.40x (1.00x to 9.00x)`: mean, smallest, largest.
+pub fn spread([mean, low, high]: [f64; 3]) -> String {
+    format!("{} ({} to {})", times(mean), times(low), times(high))
+}
+
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

@@ -34,17 +34,26 @@ const loaded = load();
 const soon = new MessageChannel();
 soon.port1.onmessage = () => awaited();
 
-/** Loads the module: the one with threads if the page is isolated and the folder has it, else the one without. */
+/** The module with threads; none if the page is not isolated, the folder lacks it, or the browser refuses its memory. */
+async function threaded(threads) {
+    if (threads < 2) return null;
+    try {
+        const module = await import("./threads/bowknot.js");
+        await module.default();
+        module.tellFaultsOn(new URL(location.href).searchParams.get("faults"));
+        await module.initThreadPool(threads);
+        return module;
+    } catch {
+        return null;
+    }
+}
+
 async function load() {
     const threads = globalThis.crossOriginIsolated ? Math.min(navigator.hardwareConcurrency, THREADS) : 1;
-    const threaded = threads > 1 ? await import("./threads/bowknot.js").catch(() => null) : null;
-    bowknot = threaded ?? (await import("./bowknot.js"));
-    await bowknot.default();
-    if (threaded) {
-        bowknot.tellFaultsOn(new URL(location.href).searchParams.get("faults"));
-        await bowknot.initThreadPool(threads);
-    }
-    say({ is: "loaded", threads: threaded ? threads : 1 });
+    const module = await threaded(threads);
+    bowknot = module ?? (await import("./bowknot.js"));
+    if (!module) await bowknot.default();
+    say({ is: "loaded", threads: module ? threads : 1 });
 }
 
 function layout() {

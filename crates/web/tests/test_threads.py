@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -19,12 +20,20 @@ PACKAGE = "npm/bowknot/threads/bowknot.js"
 
 def test_an_isolated_page_has_threads(browser: Browser, isolated: str, pictures: Path) -> None:
     start(browser, isolated, "drape")
+    if browser.evaluate("navigator.hardwareConcurrency") < 2:
+        pytest.skip("one core has no threads")
     browser.wait(f"Number(document.body.dataset.frame) >= {FRAMES}", 120)
     assert (browser.data("state"), browser.data("intersections")) == ("ready", "0")
     cores = browser.evaluate("navigator.hardwareConcurrency")
     assert int(browser.data("threads") or 0) == min(cores, 8)
     print(f"\n  drape, {browser.data('threads')} threads: {browser.data('rate')} frames/s, step {browser.data('step')} ms")
     browser.picture(pictures / "threads.png")
+
+
+def test_the_package_exports_it() -> None:
+    folder = TARGET / "npm/bowknot"
+    export = json.loads((folder / "package.json").read_text())["exports"]["./threads"]
+    assert (folder / export["types"]).is_file() and (folder / export["default"]).is_file()
 
 
 def test_other_pages_have_one(browser: Browser, address: str) -> None:
@@ -39,8 +48,8 @@ def test_positions_are_those_of_the_command(
     compared(browser, isolated, tmp_path, scene, scale, frames, "quick", PACKAGE)
 
 
-def test_faults_on_other_threads_are_told(browser: Browser, isolated: str) -> None:
-    """The page of a worker that waits for a thread that has failed says so."""
+def test_the_page_listens_to_its_channel(browser: Browser, isolated: str) -> None:
+    """So a fault of a thread that its worker waits for ends the wait. The test stands for the thread."""
     start(browser, isolated, "drape", "&pause=1")
     browser.evaluate("new BroadcastChannel(client.faults.name).postMessage('internal error: a test')")
     browser.wait("document.body.dataset.state === 'failed'")

@@ -66,6 +66,9 @@ fn build(root: &Path, target: &Path, what: Parts) -> Result<PathBuf> {
     match what {
         Parts::All => {
             let threads = nightly::has_sources(root);
+            if !threads {
+                println!("==> no module with threads: it needs the nightly compiler with the component rust-src");
+            }
             web::build(root, target, web::Options { quick: false, threads })?;
             // With the wheel, which it builds.
             let extension = blender::pack_and_test(root, target, Vec::new(), false)?;

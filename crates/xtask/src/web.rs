@@ -98,6 +98,7 @@ pub fn build(root: &Path, target: &Path, options: Options) -> Result<()> {
     if let Some(threaded) = &threaded {
         write_threaded(&tool, threaded, &page.join(THREADED), &["--no-typescript"])?;
         write_threaded(&tool, threaded, &npm.join("bowknot").join(THREADED), &[])?;
+        export_threads(&npm.join("bowknot/package.json"))?;
     }
     let features: &[&str] = if options.threads { &["bowknot-web/threads"] } else { &[] };
     for folder in [&page, &npm.join("bowknot"), &npm.join("bowknot-compat")] {
@@ -156,6 +157,17 @@ fn write_threaded(tool: &Path, wasm: &Path, folder: &Path, options: &[&str]) -> 
     } else {
         Err(Error::other("wasm-bindgen-rayon imports the module in another way than it did"))
     }
+}
+
+/// Names the module with threads in the manifest of the package.
+fn export_threads(manifest: &Path) -> Result<()> {
+    let text = fs::read_to_string(manifest)?;
+    let last = "\"./bowknot_bg.wasm\": \"./bowknot_bg.wasm\"";
+    let more = r#""./threads": { "types": "./threads/bowknot.d.ts", "default": "./threads/bowknot.js" }"#;
+    if !text.contains(last) {
+        return Err(Error::other(format!("{}: no export after which that of threads fits", manifest.display())));
+    }
+    fs::write(manifest, text.replace(last, &format!("{last},\n        {more}")))
 }
 
 /// The page: its own files, the module, and the viewer of the report.

@@ -6,7 +6,7 @@ use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report};
 use crate::methods::{METHODS, Setting};
 use crate::over_fast::{OverFast, against_fast};
-use crate::table::{Entry, Table, times};
+use crate::table::{Entry, Table, spread};
 use crate::targets::Targets;
 use anyhow::Result;
 
@@ -77,12 +77,8 @@ fn table(unaware: &[OverFast], aware: &[OverFast], lacks: bool) -> Table {
     header.push("intersections".to_owned());
     let mut table = Table::new(header);
     for (unaware, aware) in unaware.iter().zip(aware) {
-        let spread = |[mean, low, high]: [f64; 3]| -> Entry {
-            if mean.is_finite() {
-                format!("{} ({} to {})", times(mean), times(low), times(high)).into()
-            } else {
-                "-".into()
-            }
+        let spread = |ratios: [f64; 3]| -> Entry {
+            if ratios[0].is_finite() { spread(ratios).into() } else { "-".into() }
         };
         let of_targets = |method: &OverFast| {
             let count = |number: usize| -> Entry { format!("{number} of {}", method.problems).into() };

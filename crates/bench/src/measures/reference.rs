@@ -53,7 +53,7 @@ fn solution(bench: &Bench, case: &CollisionCase) -> Result<Option<Vec<Point>>> {
     let mut best: Option<Found> = None;
     let ways = bench.size.pick(&WAYS[..], &WAYS[..1], &WAYS[..1]);
     for (number, shares) in ways.iter().enumerate() {
-        // Where two ways come to no end, a third one hardly does.
+        // A minute and a half are saved where two have failed.
         if number == 2 && best.is_none() {
             break;
         }

@@ -17,6 +17,8 @@ from .gather import Gathering
 
 #: The bake that goes on, if any. There is one at a time: it has all cores.
 running: Bake | None = None
+#: The bake that the last undo has ended, if it has.
+_undone: Bake | None = None
 
 
 class Bake:
@@ -172,25 +174,45 @@ def stop(*_: object) -> None:
         current.close()
 
 
+def end(message: str) -> Bake:
+    """Ends the bake that goes on, waits for it, and says why; what is done stays."""
+    current = running
+    current.close()
+    current.message = message
+    finish(current)
+    return current
+
+
 @persistent
-def before_undo(scene: bpy.types.Scene, *_: object) -> None:
-    """Ends a bake that still reads the animation: an undo replaces the objects that it reads. Later ones know names alone."""
-    if running is not None and not running.waiting:
-        stop()
-        scene.bowknot.message = "Canceled by an undo: bake again"
+def before_undo(*_: object) -> None:
+    """Ends a bake that still reads the animation: an undo replaces the objects that it reads. Later it knows names alone."""
+    global _undone
+    _undone = end("Canceled by an undo: bake again") if running is not None and not running.waiting else None
+
+
+@persistent
+def after_undo(*_: object) -> None:
+    """Says so once more: the undo may have taken the message back."""
+    if _undone is not None:
+        finish(_undone)
 
 
 def register() -> None:
     bpy.app.handlers.load_pre.append(stop)
-    for handlers in (bpy.app.handlers.undo_pre, bpy.app.handlers.redo_pre):
-        handlers.append(before_undo)
+    for handlers, handler in _of_undo():
+        handlers.append(handler)
 
 
 def unregister() -> None:
     stop()
     bpy.app.handlers.load_pre.remove(stop)
-    for handlers in (bpy.app.handlers.undo_pre, bpy.app.handlers.redo_pre):
-        handlers.remove(before_undo)
+    for handlers, handler in _of_undo():
+        handlers.remove(handler)
+
+
+def _of_undo() -> list[tuple[list[object], object]]:
+    of = bpy.app.handlers
+    return [(of.undo_pre, before_undo), (of.redo_pre, before_undo), (of.undo_post, after_undo), (of.redo_post, after_undo)]
 
 
 def run(context: bpy.types.Context, *, resume: bool) -> Bake:

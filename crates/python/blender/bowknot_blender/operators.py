@@ -98,8 +98,9 @@ class _Baking:
 
     def cancel(self, context: bpy.types.Context) -> None:
         """The window is closed, with the timer that would take the bake further."""
-        bake.stop()
         context.window_manager.progress_end()
+        if bake.running is not None:
+            bake.end("Ended with its window")
 
     def _end(self, done: bake.Bake) -> set[str]:
         self.report({"ERROR" if done.error is not None else "INFO"}, done.message)

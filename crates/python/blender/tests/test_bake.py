@@ -148,7 +148,11 @@ def test_an_undo_ends_a_bake_that_reads_the_animation(scene):
     cloth = sheet(location=(0, 0, 0.6))
     going = bake.begin(bpy.context, resume=False)
     assert going.advance() and not going.waiting
+    handlers = bpy.app.handlers
+    assert bake.before_undo in handlers.undo_pre and bake.after_undo in handlers.undo_post
     bake.before_undo(scene)
+    scene.bowknot.message = ""
+    bake.after_undo(scene)
     assert bake.running is None and "undo" in scene.bowknot.message
     assert not cloth.modifiers and scene.frame_current == scene.frame_start
     # A later one leaves it: nothing of Blender is read any more.
@@ -156,6 +160,7 @@ def test_an_undo_ends_a_bake_that_reads_the_animation(scene):
     while going.advance() and not going.waiting:
         pass
     bake.before_undo(scene)
+    bake.after_undo(scene)
     assert bake.running is going
     bake.stop()
     assert bake.running is None and [m.type for m in cloth.modifiers] == ["MESH_CACHE", "TRIANGULATE"]
@@ -185,6 +190,11 @@ def test_the_interface_bakes_in_the_background_and_cancels(scene):
             bpy.ops.bowknot.cancel()
     assert press.told[0] == {"INFO"} and "Resume goes on from there" in press.told[1]
     assert len([what for what, _ in seen if what == "Simulating"]) > 2
+    # Its window is closed.
+    bake.begin(bpy.context, resume=False)
+    assert press.modal(context, tick) == {"PASS_THROUGH"}
+    press.cancel(context)
+    assert bake.running is None and scene.bowknot.message == "Ended with its window"
     assert bake.running is None and [m.type for m in cloth.modifiers] == ["MESH_CACHE", "TRIANGULATE"]
 
 
