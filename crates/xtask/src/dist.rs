@@ -67,7 +67,9 @@ fn build(root: &Path, target: &Path, what: Parts) -> Result<PathBuf> {
         Parts::All => {
             let threads = nightly::has_sources(root);
             if !threads {
-                println!("==> no module with threads: it needs the nightly compiler with the component rust-src");
+                println!(
+                    "==> no module with threads: it needs the nightly compiler with the component rust-src"
+                );
             }
             web::build(root, target, web::Options { quick: false, threads })?;
             // With the wheel, which it builds.

@@ -165,7 +165,10 @@ fn export_threads(manifest: &Path) -> Result<()> {
     let last = "\"./bowknot_bg.wasm\": \"./bowknot_bg.wasm\"";
     let more = r#""./threads": { "types": "./threads/bowknot.d.ts", "default": "./threads/bowknot.js" }"#;
     if !text.contains(last) {
-        return Err(Error::other(format!("{}: no export after which that of threads fits", manifest.display())));
+        return Err(Error::other(format!(
+            "{}: no export after which that of threads fits",
+            manifest.display()
+        )));
     }
     fs::write(manifest, text.replace(last, &format!("{last},\n        {more}")))
 }
