@@ -1,6 +1,7 @@
 //! How old results are. Those that were measured before much of the solver changed are marked on their pages.
 
-use crate::{front, git, pages};
+use crate::pages::{self, STALE};
+use crate::{front, git};
 use anyhow::{Context, Result};
 use std::collections::HashMap;
 use std::fs;
@@ -24,9 +25,6 @@ const SOLVER: [&str; 9] = [
 
 /// Pages whose results name their commits.
 const PAGES: [&str; 4] = [pages::BENCHMARKS, pages::GALLERY, pages::GPU_RESULTS, pages::STABILITY];
-
-/// What follows the commits of stale results.
-pub const MARK: &str = " (*stale*)";
 
 /// Marks stale results on all pages of the repository at `root`, takes the mark from others, and writes the rows of the
 /// first section anew.
@@ -62,7 +60,7 @@ impl Ages<'_> {
     }
 }
 
-/// The text with [`MARK`] after each list of commits of which one is stale, and after no other: "Commit 0123abc,
+/// The text with [`STALE`] after each list of commits of which one is stale, and after no other: "Commit 0123abc,
 /// 4567def (*stale*)".
 fn marked(text: &str, is_stale: &mut impl FnMut(&str) -> bool) -> String {
     let mut pieces = text.split("ommit ");
@@ -85,10 +83,10 @@ fn marked(text: &str, is_stale: &mut impl FnMut(&str) -> bool) -> String {
         let list = commits.join(", ");
         result.push_str(&list);
         if commits.into_iter().any(&mut *is_stale) {
-            result.push_str(MARK);
+            result.push_str(STALE);
         }
         let after = &piece[list.len()..];
-        result.push_str(if list.is_empty() { after } else { after.strip_prefix(MARK).unwrap_or(after) });
+        result.push_str(if list.is_empty() { after } else { after.strip_prefix(STALE).unwrap_or(after) });
     }
     result
 }

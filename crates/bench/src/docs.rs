@@ -7,13 +7,11 @@ use crate::chart;
 use crate::figure::{Figure, Part, Report};
 use crate::files::write;
 use crate::machine::WITH_CHANGES;
-use crate::pages::{BENCHMARKS, FILMS, GALLERY, README, STABILITY};
+use crate::pages::{BENCHMARKS, FILMS, FOLDER, GALLERY, README, STABILITY};
 use crate::{front, git, page};
 use anyhow::{Context, Result, bail, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-pub const FOLDER: &str = "docs/benchmarks";
 
 /// The documentation in a repository.
 #[derive(Debug)]

@@ -4,11 +4,9 @@
 //! Rows are read from the tables in docs/benchmarks. One that the page calls stale, or that is not there, gives no row:
 //! no figure is carried forward.
 
-use crate::age::MARK;
-use crate::docs::FOLDER;
 use crate::files::write;
 use crate::page;
-use crate::pages::{BENCHMARKS, README};
+use crate::pages::{BENCHMARKS, FOLDER, README, STALE};
 use crate::table::{Table, geometric_mean, largest, smallest, spread, times};
 use anyhow::{Context, Result, ensure};
 use std::collections::{BTreeMap, BTreeSet};
@@ -84,7 +82,7 @@ impl Published<'_> {
         self.page
             .lines()
             .find(|line| line.contains(&link) && line.contains("Commit "))
-            .filter(|line| !line.contains(MARK))
+            .filter(|line| !line.contains(STALE))
     }
 
     /// A table that has these columns of text; none if it is stale or not there.
@@ -336,14 +334,14 @@ mod tests {
     use super::*;
     use crate::files::write;
 
-    const STALE: &str =
+    const OLD: &str =
         "| [peers-cloth.csv](benchmarks/peers-cloth.csv) | Commit 4567abc (*stale*); 1 thread |\n";
 
     /// A repository whose page names these tables as measured just now.
     fn repository(tables: &[(&str, &str)]) -> tempfile::TempDir {
         let folder = tempfile::tempdir().expect("a folder");
         let empty = "<!-- begin front -->\n<!-- end front -->\n";
-        let mut page = format!("{empty}{STALE}");
+        let mut page = format!("{empty}{OLD}");
         for (name, table) in tables {
             page += &format!("| [{name}.csv](benchmarks/{name}.csv) | Commit 0123abc; 1 thread |\n");
             write(&folder.path().join(FOLDER).join(format!("{name}.csv")), table).expect("a file");

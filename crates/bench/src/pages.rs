@@ -2,6 +2,10 @@
 
 /// Figures and tables, with an index of them.
 pub const BENCHMARKS: &str = "docs/benchmarks.md";
+/// The tables and charts of that page.
+pub const FOLDER: &str = "docs/benchmarks";
+/// What follows the commits of stale results.
+pub const STALE: &str = " (*stale*)";
 /// What users read first: some of its rows.
 pub const README: &str = "README.md";
 /// The cases of [`crate::stability`].
