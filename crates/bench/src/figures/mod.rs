@@ -65,6 +65,7 @@ pub const ALL: &[&dyn Figure] = &[
     &early_contact::EarlyContact,
     &goals::Goals,
     &gpu::Gpu,
-    &stability::Stability,
     &gallery::Gallery,
+    // The longest: in a preview it has what time is left.
+    &stability::Stability,
 ];
