@@ -6,7 +6,7 @@ pub const BENCHMARKS: &str = "docs/benchmarks.md";
 pub const FOLDER: &str = "docs/benchmarks";
 /// What follows the commits of stale results.
 pub const STALE: &str = " (*stale*)";
-/// What users read first: some of its rows.
+/// What users read first: the rows of its first section.
 pub const README: &str = "README.md";
 /// The cases of [`crate::stability`].
 pub const STABILITY: &str = "docs/stability.md";

@@ -5,7 +5,7 @@ import { sceneWith } from "./file.js";
 /** Name of the pin by which the pointer holds a vertex. */
 const HAND = "the pointer";
 
-/** Most threads: more of them gain little on meshes of this size. */
+/** Most threads, so that a page leaves something of a large machine to others. */
 const THREADS = 8;
 
 /** The module, see `load`. */

@@ -25,7 +25,8 @@ impl Figure for Overview {
         "CPU time and error of the collision stage as multiples of those of `fast`, the default: geometric \
          mean over six scenes (smallest to largest). Above 1 is worse. In the first table the problem has \
          contacts alone, which is what all methods solve; impact zones keep no distance, except those with \
-         0.8 delta, barriers less of it where something presses, `fast` and `quick` half of it in sharp folds. In the second one edges have limits as well. What a method *lacks* of that problem counts \
+         0.8 delta, barriers less of it where something presses, `fast` and `quick` half of it in sharp \
+         folds. In the second one edges have limits as well. What a method *lacks* of that problem counts \
          as its error there: not all solve the same problem. All but `paper`, `quick` and the variants of \
          `paper` stop where no vertex would move by more than 0.01 mean edge lengths; `tolerance` has others."
     }

@@ -26,7 +26,8 @@ impl Figure for Table2Full {
 
     fn question(&self) -> &'static str {
         "Every scene at scale 1 with its default settings. The judge looks at every state and at the path to it; `cpu_s` \
-         includes it, `collision_s` and `dynamics_s` do not. Runs are continued by further runs of this figure, a quarter of an hour each, until \
+         includes it, `collision_s` and `dynamics_s` do not. Runs are continued by \
+         further runs of this figure, a quarter of an hour each, until \
          all are at their end: `time_steps` of `all_time_steps` are done. Memory is the peak of the process that \
          computed last. The paper's seconds are those of the collision stage on a GPU, for 25 to 70 thousand \
          vertices."
