@@ -65,6 +65,9 @@ impl CollisionCase {
             let resolver = self.states.resolver(self.model.clone(), params.clone())?;
             Ok(resolver.scene().lengths().delta)
         };
+        // The paper asks pairs that begin nearer than delta for the whole of it at once. Here all methods are asked for
+        // the same.
+        params.contact.separation_speed = params.contact.separation_speed.filter(|speed| speed.is_finite());
         let ProblemLengths { delta, min_separation, .. } = self.lengths;
         if delta.is_some() || min_separation.is_some() {
             let of = recorded(&params)?;

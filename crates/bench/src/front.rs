@@ -165,11 +165,11 @@ const TEXT: &str = "Above 1 Bowknot, with the preset `fast`, is better. Each row
                     means, with the smallest and largest in parentheses; CPU time of one thread unless a row says \
                     otherwise. What is stale gives no row.\n\n\
                     *Recorded problems*: the collision stage alone, without edge limits; contact-unaware targets, \
-                    then contact-aware ones. The methods are those of `crates/baselines`; each ends after 4 s, and \
-                    what has *not ended* then has a larger time and another error. *Error*: the distance to the \
-                    solution of a separate solver where it found one, else the residuals. Impact zones, rigid ones \
-                    too, keep no contact distance, barriers less of it where something presses, Bowknot half of it \
-                    in sharp folds.";
+                    then those of the paper's repulsion, then contact-aware ones. The methods are those of \
+                    `crates/baselines`; each ends after 4 s, and what has *not ended* then has a larger time and \
+                    another error. *Error*: the distance to the solution of a separate solver where it found one, \
+                    else the residuals. Impact zones, rigid ones too, keep no contact distance, barriers less of it \
+                    where something presses, Bowknot half of it in sharp folds.";
 
 /// `paper`, the barrier of IPC, and of all other methods that failed on no problem the most accurate and the fastest.
 fn stage(published: &Published) -> Result<Vec<Comparison>> {
@@ -181,7 +181,7 @@ fn stage(published: &Published) -> Result<Vec<Comparison>> {
     let names = source.rows.iter().map(|row| row["method"].as_str());
     let others: BTreeSet<&str> =
         names.filter(|name| !known.iter().any(|known| name.starts_with(known))).collect();
-    // Geometric mean over both kinds of targets.
+    // Geometric mean over all kinds of targets.
     let mean = |name: &str, column: &str| -> Result<f64> {
         let rows = source.rows.iter().filter(|row| row["method"] == name);
         let values: Vec<f64> = rows.map(|row| number(row, column)).collect::<Result<_>>()?;

@@ -9,6 +9,7 @@ use anyhow::{Context, Result};
 use bowknot::constraints::STRETCH_LIMIT;
 use bowknot::recording::Recorder;
 use bowknot::recording::States;
+use bowknot::scene::RepulsionParams;
 use bowknot::simulator::{CollisionProblem, SimulationObserver};
 use bowknot::{Scene, Simulator};
 use bowknot_errors::counted;
@@ -25,7 +26,7 @@ pub struct ProblemSet {
     scene: &'static str,
     /// Time step [s]; none: the scene's own.
     time_step: Option<f64>,
-    /// Whether the dynamics has repulsion.
+    /// What the dynamics knows of contacts.
     targets: Targets,
     /// Scales of a full, a quick and a tiny run.
     scales: [f64; 3],
@@ -40,6 +41,11 @@ const fn set(scene: &'static str, scales: [f64; 3], frames: [usize; 3]) -> Probl
 /// The scene of another set with contact-unaware targets, for `frames` time steps.
 const fn unaware(name: &'static str, set: ProblemSet, frames: [usize; 3]) -> ProblemSet {
     ProblemSet { name, targets: Targets::Unaware, frames, ..set }
+}
+
+/// The scene of another set with targets of the paper's repulsion.
+const fn repelled(name: &'static str, set: ProblemSet) -> ProblemSet {
+    ProblemSet { name, targets: Targets::Repelled, ..set }
 }
 
 /// The scene of another set with another time step, for `frames` of them.
@@ -59,6 +65,9 @@ const UNAWARE_STACK: ProblemSet = unaware("stack-unaware", STACK, [120, 70, 50])
 const UNAWARE_BOW_KNOT: ProblemSet = unaware("bow-knot-unaware", BOW_KNOT, [300, 160, 60]);
 const UNAWARE_REEF_KNOT: ProblemSet = unaware("reef-knot-unaware", REEF_KNOT, [280, 120, 60]);
 
+const UNAWARE_TUBE: ProblemSet = unaware("tube-unaware", TUBE, [150, 100, 90]);
+const UNAWARE_DRESS: ProblemSet = unaware("dress-unaware", DRESS, [120, 30, 10]);
+
 /// The sets that `record` writes. A full run of each takes from seconds to a few minutes; it ends where
 /// contact is hardest or the scene is at rest.
 pub const PROBLEM_SETS: [ProblemSet; 17] = [
@@ -77,8 +86,8 @@ pub const PROBLEM_SETS: [ProblemSet; 17] = [
     UNAWARE_NEEDLE,
     unaware("funnel-unaware", FUNNEL, [40, 20, 8]),
     UNAWARE_STACK,
-    unaware("tube-unaware", TUBE, [150, 100, 90]),
-    unaware("dress-unaware", DRESS, [120, 30, 10]),
+    UNAWARE_TUBE,
+    UNAWARE_DRESS,
 ];
 
 /// Sets with other time steps, for single figures: knots at 1/1000 s (paper, section 3.3), the needle at
@@ -102,6 +111,16 @@ const OTHER_TIME_STEPS: [ProblemSet; 6] = [
     stepped("stack-unaware-20", UNAWARE_STACK, 0.05, [24, 14, 10]),
 ];
 
+/// Sets with targets of the paper's repulsion.
+const REPELLED: [ProblemSet; 6] = [
+    repelled("needle-repelled", UNAWARE_NEEDLE),
+    repelled("stack-repelled", UNAWARE_STACK),
+    repelled("tube-repelled", UNAWARE_TUBE),
+    repelled("bow-knot-repelled", UNAWARE_BOW_KNOT),
+    repelled("reef-knot-repelled", UNAWARE_REEF_KNOT),
+    repelled("dress-repelled", UNAWARE_DRESS),
+];
+
 /// Number of scenes in [`PROBLEM_SETS`]: each has a set with contact-aware targets, and some another one with
 /// contact-unaware targets.
 pub fn contact_aware_scenes() -> usize {
@@ -114,7 +133,7 @@ const KEPT: usize = 10;
 impl ProblemSet {
     /// The set of that name.
     pub fn of(name: &str) -> Result<&'static ProblemSet> {
-        let mut all = PROBLEM_SETS.iter().chain(&OTHER_TIME_STEPS);
+        let mut all = PROBLEM_SETS.iter().chain(&OTHER_TIME_STEPS).chain(&REPELLED);
         all.find(|set| set.name == name).with_context(|| format!("no problems of {name}"))
     }
 
@@ -131,6 +150,9 @@ impl ProblemSet {
         let repulsion = match self.targets {
             Targets::Aware => "",
             Targets::Unaware => " --set solver.repulsion.stiffness=0",
+            Targets::Repelled => {
+                " --set solver.repulsion.law=quadratic --set solver.repulsion.stiffness=1000"
+            }
         };
         let sigma = format!(" --set contact.stretch_limit={STRETCH_LIMIT}");
         let (scene, scale) = (self.scene, self.scale(size));
@@ -154,8 +176,10 @@ impl ProblemSet {
         scene.simulation.dt = self.time_step.unwrap_or(scene.simulation.dt);
         // The paper's limit for every fabric, so that its method gets the problems that it was made for.
         scene.contact.stretch_limit = Some(STRETCH_LIMIT);
-        if self.targets == Targets::Unaware {
-            scene.solver.repulsion.stiffness = 0.0;
+        match self.targets {
+            Targets::Aware => {}
+            Targets::Unaware => scene.solver.repulsion.stiffness = 0.0,
+            Targets::Repelled => scene.solver.repulsion = RepulsionParams::paper(),
         }
         let [full, quick, tiny] = self.frames;
         let frames = bench.size.pick(full, quick, tiny);

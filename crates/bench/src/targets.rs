@@ -1,4 +1,4 @@
-//! The two kinds of targets that collision problems have.
+//! The kinds of targets that collision problems have.
 
 use crate::bench::Size;
 
@@ -10,15 +10,26 @@ pub enum Targets {
     /// Bowknot's dynamics without repulsion: targets lie deep in penetration. The paper's simulator has a
     /// repulsive model (section 6.2), so these are not the paper's targets.
     Unaware,
+    /// Bowknot's dynamics with a repulsion of quadratic energy, as the paper has it.
+    Repelled,
 }
 
 /// Suffix of the names of problem sets with contact-unaware targets.
 pub const UNAWARE_SUFFIX: &str = "-unaware";
 
+/// Suffix of the names of problem sets with targets of the paper's repulsion.
+pub const REPELLED_SUFFIX: &str = "-repelled";
+
 impl Targets {
     /// The targets of the problem set of that name.
     pub fn of(problems: &str) -> Self {
-        if problems.contains(UNAWARE_SUFFIX) { Self::Unaware } else { Self::Aware }
+        if problems.contains(UNAWARE_SUFFIX) {
+            Self::Unaware
+        } else if problems.contains(REPELLED_SUFFIX) {
+            Self::Repelled
+        } else {
+            Self::Aware
+        }
     }
 
     /// The problem sets that all methods are compared on.
@@ -41,14 +52,27 @@ impl Targets {
                 &["needle-unaware", "stack-unaware"],
                 &["needle-unaware"],
             ),
+            Self::Repelled => size.pick(
+                &[
+                    "needle-repelled",
+                    "stack-repelled",
+                    "tube-repelled",
+                    "bow-knot-repelled",
+                    "reef-knot-repelled",
+                    "dress-repelled",
+                ][..],
+                &["needle-repelled"],
+                &["needle-repelled"],
+            ),
         }
     }
 
-    /// The word for them in names of tables.
+    /// The word for them in tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Aware => "aware",
             Self::Unaware => "unaware",
+            Self::Repelled => "repelled",
         }
     }
 }

@@ -28,7 +28,7 @@ pub struct ContactParams {
     /// steps. Default 1.1.
     pub active: f64,
     /// Speed [m/s] at which pairs are separated that start closer than `delta`. Default 20 `delta` per
-    /// second. Larger: pairs that start close open faster, and the cloth is thrown.
+    /// second. Larger: pairs that start close open faster, and the cloth is thrown; inf: at once (paper).
     pub separation_speed: Option<f64>,
     /// Whether only contacts become rows: pairs whose normal lies in the normal cones of both features. If
     /// false, all pairs in range do; the rows of those ahead of a vertex that slides on a mesh block its way.
@@ -131,6 +131,7 @@ impl ContactParams {
         Self {
             min_separation: Some(0.0),
             range: 4.0,
+            separation_speed: Some(f64::INFINITY),
             contacts_only: false,
             form: ContactForm::Volume,
             friction_model: FrictionModel::Filter,
@@ -153,7 +154,7 @@ impl Parameters for ContactParams {
         checks.at_least("range", self.range, 1.0);
         checks.at_least("active", self.active, 1.0);
         if let Some(speed) = self.separation_speed {
-            checks.positive("separation_speed", speed);
+            checks.above_or_infinite("separation_speed", speed, 0.0);
         }
         if let Some(limit) = self.stretch_limit {
             checks.above_or_infinite("stretch_limit", limit, 1.0);
@@ -169,12 +170,11 @@ mod tests {
     fn every_number_must_be_in_range_and_nan_is_refused() {
         assert!(ContactParams::default().validate().is_ok() && ContactParams::paper().validate().is_ok());
         type Set = fn(&mut ContactParams, f64);
-        let fields: [(&str, Set); 5] = [
+        let fields: [(&str, Set); 4] = [
             ("delta", |p, value| p.delta = Some(value)),
             ("min_separation", |p, value| p.min_separation = Some(value)),
             ("range", |p, value| p.range = value),
             ("active", |p, value| p.active = value),
-            ("separation_speed", |p, value| p.separation_speed = Some(value)),
         ];
         for (path, set) in fields {
             for value in [f64::NAN, f64::INFINITY, -1.0] {
@@ -190,5 +190,11 @@ mod tests {
             assert_eq!((errors.len(), errors[0].path.as_str()), (1, "stretch_limit"), "{limit}");
         }
         assert!(limited(f64::INFINITY).validate().is_ok(), "no limit");
+        let separating = |speed| ContactParams { separation_speed: Some(speed), ..ContactParams::default() };
+        for speed in [f64::NAN, -1.0, 0.0] {
+            let errors = separating(speed).validate().expect_err("out of range");
+            assert_eq!((errors.len(), errors[0].path.as_str()), (1, "separation_speed"), "{speed}");
+        }
+        assert!(separating(f64::INFINITY).validate().is_ok(), "at once");
     }
 }

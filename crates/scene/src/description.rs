@@ -4,7 +4,9 @@ use crate::body::BodySpec;
 use crate::friction::FrictionPair;
 use crate::obstacle::ObstacleSpec;
 use crate::origin::Origins;
-use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams, SleepParams};
+use crate::params::{
+    OutputParams, Preset, RepulsionParams, SceneSolverParams, SimulationParams, SleepParams,
+};
 use crate::pin::PinSpec;
 use bowknot_dynamics::{DynamicsParams, Environment, NewtonParams};
 use bowknot_twoway::ContactParams;
@@ -51,8 +53,11 @@ impl Scene {
             // Most time steps then end after one iteration.
             newton.step_tolerance = 0.3;
         }
-        let solver =
-            SceneSolverParams { backward, forward, stop, newton, sleep, ..SceneSolverParams::default() };
+        let repulsion = match preset {
+            Preset::Paper => RepulsionParams::paper(),
+            Preset::Fast | Preset::Quick => RepulsionParams::default(),
+        };
+        let solver = SceneSolverParams { backward, forward, stop, newton, repulsion, sleep };
         Self { preset, contact, solver, ..Self::default() }
     }
 

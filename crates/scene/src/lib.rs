@@ -63,8 +63,8 @@ pub use obstacle::ObstacleSpec;
 pub use open::twoway_params;
 pub use origin::{Origin, Origins};
 pub use params::{
-    CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SceneSolverParams,
-    SimulationParams, SleepParams,
+    CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionLaw, RepulsionParams,
+    SceneSolverParams, SimulationParams, SleepParams,
 };
 pub use pin::{PinSpec, Region, RootEnd, Side};
 pub use world::{SceneInfo, World};

@@ -1,5 +1,6 @@
 //! The tables of a scene that belong to the facade itself; the others are the crates' own parameters.
 
+use bowknot_constraints::FrictionModel;
 use bowknot_dynamics::{Integrator, NewtonParams};
 use bowknot_errors::{Checks, Parameters};
 use bowknot_twoway::{BackwardParams, ForwardParams, StopParams};
@@ -103,19 +104,47 @@ pub struct SceneSolverParams {
 /// are near, in Newton's method, whose force follows from the gap, with friction. Without
 /// them the collision stage alone holds bodies apart, and what rests on something is deformed within each
 /// time step. The guarantee does not rest on them. Grains have none where they touch grains or obstacles.
-/// With `contact.friction_model = "filter"`, and so with the preset `paper`, there are no springs whatever
-/// the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RepulsionParams {
+    /// What the springs are: `contact`, or `quadratic` as in the paper. Default contact. Under
+    /// `contact.friction_model = "filter"` they are always quadratic, and pairs with friction have none: the
+    /// filter takes friction from how deep targets are.
+    pub law: RepulsionLaw,
     /// Stiffness of the springs in units of the bodies' own at the contact [1]; 0 switches them off. Larger:
-    /// contacts give way less in the dynamics, its linear system takes longer. Default 3.
+    /// contacts give way less in the dynamics, its linear system takes longer. Default 3 (paper: 1000).
     pub stiffness: f64,
+}
+
+/// The springs of near surfaces in the dynamics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RepulsionLaw {
+    /// Contacts: the force is infinite at a floor below the contact distance and has friction, and the
+    /// iterations of a time step go on until the forces of all contacts are right.
+    #[default]
+    Contact,
+    /// A repulsion of quadratic energy (paper, section 6.2) from two contact distances on: targets lie less deep, and
+    /// collisions are left to the collision stage.
+    Quadratic,
+}
+
+impl RepulsionParams {
+    /// Those of the paper. It gives neither reach nor stiffness: the reach is that up to which its search finds all
+    /// pairs, and with this stiffness small scenes take about as many two-way steps as it reports.
+    pub fn paper() -> Self {
+        Self { law: RepulsionLaw::Quadratic, stiffness: 1000.0 }
+    }
+
+    /// Whether the dynamics knows contacts and their forces, beside a model of friction.
+    pub fn knows_contacts(&self, friction: FrictionModel) -> bool {
+        self.stiffness > 0.0 && self.law == RepulsionLaw::Contact && friction != FrictionModel::Filter
+    }
 }
 
 impl Default for RepulsionParams {
     fn default() -> Self {
-        Self { stiffness: 3.0 }
+        Self { law: RepulsionLaw::Contact, stiffness: 3.0 }
     }
 }
 

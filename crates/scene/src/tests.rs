@@ -254,6 +254,7 @@ fn a_preset_changes_defaults_and_keeps_what_was_stated() {
     let set =
         Scene::builtin("drape", 0.1).expect("a scene").with_sets(&["contact.preset=paper"]).expect("a set");
     assert_eq!(set.twoway(), bowknot_twoway::Params::paper());
+    assert_eq!(set.solver.repulsion, crate::RepulsionParams::paper());
     let sets = ["contact.preset=paper", "solver.forward.bound=planes"];
     let params = twoway_params(&sets).expect("parameters");
     assert_eq!(params.solver.forward.bound, bowknot_twoway::stepper::Bound::Planes);

@@ -7,7 +7,6 @@ use crate::kind::BodyKind;
 use crate::shapes::Shape;
 use crate::source::Source;
 use crate::values::join;
-use bowknot_constraints::FrictionModel;
 use bowknot_dynamics::Integrator;
 use bowknot_errors::Parameters;
 use std::collections::{BTreeSet, HashMap};
@@ -111,11 +110,11 @@ impl<'a> References<'a> {
     /// A method of second order carries contact forces from one stage to the next, so it needs to know them.
     fn check_integrator(&mut self) {
         let Scene { simulation, contact, solver, .. } = self.scene;
-        let knows_contacts =
-            solver.repulsion.stiffness > 0.0 && contact.friction_model != FrictionModel::Filter;
+        let knows_contacts = solver.repulsion.knows_contacts(contact.friction_model);
         if simulation.integrator != Integrator::ImplicitEuler && !knows_contacts {
-            let message = "needs contact forces in the dynamics: set solver.repulsion.stiffness above 0 and \
-                           contact.friction_model to \"coulomb\", or use \"implicit-euler\"";
+            let message = "needs contact forces in the dynamics: set solver.repulsion.stiffness above 0, \
+                           solver.repulsion.law to \"contact\" and contact.friction_model to \"coulomb\", \
+                           or use \"implicit-euler\"";
             self.report("simulation", "integrator", message.to_owned());
         }
     }

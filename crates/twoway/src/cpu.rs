@@ -2,7 +2,7 @@
 
 use crate::algorithm::{Processor, Progress};
 use crate::error::ResolveError;
-use crate::filter::filter_slip;
+use crate::filter::apply_filter;
 use crate::observer::{AcceptedState, Observer};
 use crate::scene::CollisionScene;
 use crate::stages::{BackwardStep, ForwardStep, Search};
@@ -43,7 +43,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep<S>> Processor for Cpu<'_, S, B, 
             self.search.update(self.scene, self.state, statistics);
             self.state.check_pairs(self.scene)?;
             if self.state.step == 0 && self.scene.friction_model() == FrictionModel::Filter {
-                filter_slip(self.scene, self.state);
+                apply_filter(self.scene, self.state);
             }
             self.project(statistics);
             let report = self.advance(statistics);

@@ -1,9 +1,9 @@
 //! The velocity filter for friction (Bridson, Fedkiw and Anderson 2002; paper, section 6.3).
 //!
 //! The target comes from dynamics without friction. Where it would bring a candidate pair closer than its
-//! contact distance, the depth estimates the normal impulse that collision handling will apply. The slip
-//! since the start of the time step shrinks by mu times that depth, at most to zero. Collision handling takes
-//! care of the normal motion.
+//! contact distance, the depth estimates the normal impulse: that which moves the target out by the depth. The slip
+//! since the start of the time step shrinks by mu times the depth, at most to zero. The target takes both impulses,
+//! where there is friction; collision handling removes what depth is left, and all of it elsewhere.
 //!
 //! The filter is here and not in the dynamics because only the resolver has the pairs, their closest points
 //! and normals. It costs one pass over the pairs per call. It is only as accurate as the depths: a vertex of
@@ -16,7 +16,7 @@ use bowknot_constraints::predicted_gap;
 use bowknot_geometry::{PairKind, Vector};
 
 /// Changes `state.target`, and `state.y` with it. Needs the pairs at `state.x`.
-pub(crate) fn filter_slip(scene: &CollisionScene, state: &mut ResolveState) {
+pub(crate) fn apply_filter(scene: &CollisionScene, state: &mut ResolveState) {
     let contacts = &state.contacts;
     let mut changes = vec![(Vector::zeros(), 0u32); state.x.len()];
     for kind in PairKind::ALL {
@@ -39,11 +39,11 @@ pub(crate) fn filter_slip(scene: &CollisionScene, state: &mut ResolveState) {
             }
             let slip = motion - separation.normal * separation.normal.dot(&motion);
             let length = slip.norm();
-            if friction == 0.0 || diagonal == 0.0 || length == 0.0 {
+            if friction == 0.0 || diagonal == 0.0 {
                 continue;
             }
-            let kept = (1.0 - friction * depth / length).max(0.0);
-            let impulse = -(1.0 - kept) / diagonal * slip;
+            let lost = if length > 0.0 { (friction * depth / length).min(1.0) } else { 0.0 };
+            let impulse = (separation.normal * depth - slip * lost) / diagonal;
             for (&v, beta) in pair.vertices[..kind.vertex_count()].iter().zip(beta) {
                 let (sum, count) = &mut changes[v as usize];
                 *sum += beta * inverse_mass(scene, state, v as usize) * impulse;

@@ -32,13 +32,12 @@ mod table_2_full;
 mod tolerance;
 
 use crate::figure::Figure;
-use crate::targets::Targets;
 
 /// All of them, in the order of the page.
 pub const ALL: &[&dyn Figure] = &[
     &overview::Overview,
-    &collision_error::CollisionError { targets: Targets::Aware },
-    &collision_error::CollisionError { targets: Targets::Unaware },
+    &collision_error::CollisionError { aware: true },
+    &collision_error::CollisionError { aware: false },
     &contacts_alone::ContactsAlone,
     &tolerance::Tolerance,
     &simulation_error::SimulationError,

@@ -246,7 +246,9 @@ fn pins_end_at_their_keyframes() {
 
 #[test]
 fn second_order_without_contact_forces_is_refused() {
-    for set in ["contact.friction_model=filter", "solver.repulsion.stiffness=0"] {
+    for set in
+        ["contact.friction_model=filter", "solver.repulsion.law=quadratic", "solver.repulsion.stiffness=0"]
+    {
         let refused = scene(MIXED).with_sets(&[set, "simulation.integrator=sdirk2"]);
         let error = refused.err().map(|error| error.to_string()).unwrap_or_default();
         assert!(

@@ -55,7 +55,7 @@ pub(super) struct Push {
 /// The static force at a share s of the room, with k = r = 1, and its decrease with s.
 #[inline]
 fn shape(s: f64) -> [f64; 2] {
-    if s >= 1.0 { [0.0; 2] } else { [(1.0 - s) / (s * s), (2.0 - s) / (s * s * s)] }
+    if s > 1.0 { [0.0; 2] } else { [(1.0 - s) / (s * s), (2.0 - s) / (s * s * s)] }
 }
 
 /// Its energy.
@@ -70,6 +70,11 @@ impl NormalLaw {
         let from = start.min(reach).max(floor + MIN_BEND * (reach - floor));
         let (drag, energy_at_release) = (0.0, 0.0);
         Self { stiffness, reach, floor, from, release: reach, energy_at_release, bend: MIN_BEND, drag }
+    }
+
+    /// A law that is linear from the reach on, so that its energy is quadratic: k (reach - g).
+    pub fn quadratic(stiffness: f64, reach: f64, floor: f64) -> Self {
+        Self { bend: 1.0, ..Self::new(stiffness, reach, floor, reach) }
     }
 
     /// Sets the drag to `ratio` times the static stiffness at the start of the time step, and less the nearer

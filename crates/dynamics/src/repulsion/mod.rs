@@ -19,6 +19,8 @@
 //! linearly, so that an iterate may be anywhere; the collision stage keeps distances. The drag lets contacts
 //! open without bouncing.
 //!
+//! A spring may also be a mere [`SpringKind::Repulsion`], k (reach - g), whose energy is quadratic (paper, section 6.2).
+//!
 //! Friction is Coulomb's law as an elastic-plastic return mapping (Simo and Laursen 1992, "An augmented
 //! Lagrangian treatment of contact problems involving friction") that begins with the friction at the start
 //! of the time step, so that what sticks does not creep. Its bound lags by one Newton iteration (Li et al.

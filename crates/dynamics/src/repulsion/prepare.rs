@@ -77,6 +77,7 @@ impl Repulsion {
             };
             let compliance = match s.kind {
                 SpringKind::Contact => compliance(&|_, place| backed[place]),
+                SpringKind::Repulsion => compliance(&|_, place| own[place]),
                 SpringKind::Limit => compliance(&|node, _| along_stiffness(model, rate, node)),
             };
             *state = SpringState::default();
@@ -84,6 +85,10 @@ impl Repulsion {
                 return;
             }
             state.acts = true;
+            if s.kind == SpringKind::Repulsion {
+                state.law = NormalLaw::quadratic(s.stiffness / compliance, s.reach, s.floor);
+                return;
+            }
             let (gap, _) = self.gap_and_slip(spring, iterate);
             state.law = NormalLaw::new(s.stiffness / compliance, s.reach, s.floor, self.start_gap(spring));
             state.law.set_drag(OPENING_TIME * rate, s.start_gap);

@@ -12,6 +12,9 @@ pub enum SpringKind {
     /// A contact: the gap is n . sum beta_i x_i - offset, with a normal that stays while Newton's method
     /// iterates.
     Contact,
+    /// A repulsion of quadratic energy k/2 (reach - gap)^2 below its reach, with the gap of a contact: without
+    /// floor, drag and friction (paper, section 6.2).
+    Repulsion,
     /// An upper limit of a distance, such as of the length of an edge: the gap is -offset - |sum beta_i x_i|,
     /// and the normal turns with the vertices.
     Limit,
@@ -44,9 +47,10 @@ pub struct RepulsionSpring {
     /// Stiffness at the reach in units of 1 / sum beta_i^2 / K_i over the free vertices [1]. K_i is the
     /// stiffness of a vertex: for a contact inertia (mass / dt^2) plus the body's stiffness at rest in its
     /// softest direction, limited by the inertia of the whole body; for a limit inertia plus a share of the
-    /// stiffness in the stiffest direction. Nearer to the floor a contact is stiffer without bound.
+    /// stiffness in the stiffest direction. Nearer to the floor a contact is stiffer without bound, a repulsion is
+    /// not.
     pub stiffness: f64,
-    /// Coefficient of friction mu [1]; 0: the force is along the normal. A limit has none.
+    /// Coefficient of friction mu [1]; 0: the force is along the normal. Only a contact has any.
     pub friction: f64,
     /// Friction at the start of the time step on the side that the normal points to, as a multiple of the
     /// normal force at the start [1]. Callers keep it from the end of the last time step, see

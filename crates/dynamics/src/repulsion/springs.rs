@@ -63,8 +63,8 @@ impl Repulsion {
             if s.floor >= s.reach {
                 return refuse("its floor must be below its reach");
             }
-            if s.kind == SpringKind::Limit && s.friction != 0.0 {
-                return refuse("a limit of a distance has no friction");
+            if s.kind != SpringKind::Contact && s.friction != 0.0 {
+                return refuse("only a contact has friction");
             }
         }
         let node = |v: u32, w: f64| if w == 0.0 { NO_NODE } else { node_of(v) };
@@ -180,7 +180,7 @@ impl Repulsion {
     pub(super) fn normal(&self, spring: usize, x: &[Vector]) -> Vector {
         let s = &self.springs[spring];
         match s.kind {
-            SpringKind::Contact => s.normal,
+            SpringKind::Contact | SpringKind::Repulsion => s.normal,
             SpringKind::Limit => (-self.sides(spring, x)).try_normalize(0.0).unwrap_or(s.normal),
         }
     }

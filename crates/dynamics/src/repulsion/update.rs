@@ -1,6 +1,7 @@
 //! What changes between Newton iterations: bends of laws and bounds of friction.
 
 use super::law::MIN_BEND;
+use super::spring::SpringKind;
 use super::springs::Repulsion;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
@@ -29,7 +30,8 @@ impl Repulsion {
                 let modeled = force + stiffness * (at - gap);
                 state.predicted = false;
                 let ahead = state.slip_ahead.take();
-                if state.law.share(gap) < state.law.bend() {
+                let bends = self.springs[spring].kind != SpringKind::Repulsion;
+                if bends && state.law.share(gap) < state.law.bend() {
                     state.law.bend_at((BEND_FACTOR * state.law.bend()).max(MIN_BEND));
                 }
                 let right = state.push(gap).force;

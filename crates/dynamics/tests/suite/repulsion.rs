@@ -105,6 +105,29 @@ fn two_sheets_pushed_together_come_nearer_by_load_over_stiffness() {
     assert!((by_load - 2.0).abs() < 0.02 && (by_stiffness - 10.0).abs() < 0.1, "{by_load} {by_stiffness}");
 }
 
+/// Sheets that a repulsion pushes apart, also from far below the floor, where a contact would be stiffer.
+#[test]
+fn a_repulsion_pushes_by_its_depth_alone_and_conserves_momentum() {
+    let pushed = |start: f64| {
+        let (mut dynamics, mut x) = sheets(weightless(with_tolerance(1e-10)));
+        let count = x.len() / 2;
+        x[count..2 * count].iter_mut().for_each(|p| p.z = start);
+        let mut springs = springs(count as u32, 2.0);
+        springs.iter_mut().for_each(|spring| spring.kind = SpringKind::Repulsion);
+        let (mut v, held) = (vec![Vector::zeros(); x.len()], vec![false; x.len()]);
+        let keyframes = x.clone();
+        let forces = step(&mut dynamics, &mut springs, (&mut x, &mut v), (0.01, 3), (&held, &keyframes));
+        assert!(dynamics.momentum(&v).norm() < 1e-12);
+        let depth = |k: usize| GAP - (x[k + count].z - x[k].z);
+        (0..count).map(|k| forces[k].z / depth(k)).collect::<Vec<f64>>()
+    };
+    let [near, deep] = [pushed(0.002), pushed(-0.01)];
+    assert!(near.iter().all(|stiffness| *stiffness > 0.0));
+    for (near, deep) in near.iter().zip(&deep) {
+        assert!((near / deep - 1.0).abs() < 1e-9, "{near} {deep} N/m");
+    }
+}
+
 #[test]
 fn sheets_fly_together_with_their_momentum_at_any_tolerance() {
     let (mut dynamics, rest) = sheets(weightless(with_tolerance(1e-2)));
@@ -304,8 +327,10 @@ fn removed_springs_change_no_bit_and_bad_ones_are_refused() {
         let (_, problem) = refuse(&mut dynamics, RepulsionSpring { floor, ..good[0] });
         assert_eq!(problem, "its floor must be below its reach");
     }
-    let limit = RepulsionSpring { kind: SpringKind::Limit, friction: 0.1, ..good[0] };
-    assert_eq!(refuse(&mut dynamics, limit).1, "a limit of a distance has no friction");
+    for kind in [SpringKind::Limit, SpringKind::Repulsion] {
+        let rough = RepulsionSpring { kind, friction: 0.1, ..good[0] };
+        assert_eq!(refuse(&mut dynamics, rough).1, "only a contact has friction");
+    }
     let (_, problem) = refuse(&mut dynamics, RepulsionSpring { stiffness: -1.0, ..good[0] });
     assert!(problem.starts_with("its stiffness"), "{problem}");
     let (_, problem) = refuse(&mut dynamics, RepulsionSpring { normal: Vector::repeat(f64::NAN), ..good[0] });

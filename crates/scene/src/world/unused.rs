@@ -3,7 +3,7 @@
 use crate::description::Scene;
 use crate::kind::BodyKind;
 use crate::obstacle::ObstacleSpec;
-use crate::params::{InteriorFollows, RepulsionParams};
+use crate::params::InteriorFollows;
 use crate::pin::RootEnd;
 use crate::shapes::Shape;
 use bowknot_constraints::FrictionModel;
@@ -75,14 +75,6 @@ fn of_friction(scene: &Scene, note: Note<'_>) {
             "no body has friction, and both sides of a contact must",
         );
     }
-    let filter = scene.contact.friction_model == FrictionModel::Filter;
-    let stiffness = scene.solver.repulsion.stiffness;
-    let set = stiffness != 0.0 && stiffness != RepulsionParams::default().stiffness;
-    note(
-        filter && set,
-        "solver.repulsion.stiffness",
-        "contact.friction_model is \"filter\", which switches the springs off",
-    );
 }
 
 fn of_solver(scene: &Scene, note: Note<'_>) {
@@ -134,10 +126,6 @@ mod tests {
             (
                 "[[obstacle]]\nshape = \"ball\"\nfriction = 1",
                 "obstacle[0].friction has no effect: no body has friction",
-            ),
-            (
-                "[contact]\nfriction_model = \"filter\"\n[solver.repulsion]\nstiffness = 5",
-                "solver.repulsion.stiffness",
             ),
             ("[solver.forward]\nbound = \"isotropic\"\nswept_travel = 0.5", "solver.forward.swept_travel"),
             ("[[obstacle]]\nshape = \"ball\"\nsequence_rate = 24", "obstacle[0].sequence_rate"),

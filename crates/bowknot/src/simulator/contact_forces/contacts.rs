@@ -39,6 +39,9 @@ pub struct CarriedContacts {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contacts {
     stiffness: f64,
+    /// Whether the dynamics knows contacts and their forces. Else springs are a mere repulsion, and rows hold all
+    /// bodies apart.
+    knows: bool,
     /// The contacts that were found last, with their features oriented. Springs of edges follow after theirs.
     found: FoundContacts,
     finds: Finds,
@@ -66,12 +69,10 @@ pub(crate) struct Contacts {
 
 impl Contacts {
     pub fn new(params: &RepulsionParams, world: &World, model: &DynamicsModel, resolver: &Resolver) -> Self {
-        // The velocity filter computes friction from the depth of the target, which springs would remove.
-        let filtered = resolver.scene().friction_model() == FrictionModel::Filter;
-        let stiffness = if filtered { 0.0 } else { params.stiffness };
+        let (stiffness, knows) = (params.stiffness, params.knows_contacts(resolver.scene().friction_model()));
         let components = model.components_of_vertices();
         let joined = joined_vertices(model.element_groups());
-        let mut contacts = Self { stiffness, components, joined, ..Self::default() };
+        let mut contacts = Self { stiffness, knows, components, joined, ..Self::default() };
         contacts.leave_out(world, resolver, &[]);
         contacts
     }
@@ -108,7 +109,7 @@ impl Contacts {
 
     /// What rows alone carry where the dynamics knows contacts.
     pub fn row_multipliers(&self) -> &[PairMultipliers] {
-        if self.stiffness == 0.0 { &[] } else { self.rows.multipliers() }
+        if self.knows { self.rows.multipliers() } else { &[] }
     }
 
     /// Continues with what is carried. It may be that of a checkpoint, with any numbers in it.
@@ -185,10 +186,13 @@ impl Contacts {
             normal: spring.normal,
             force: *force,
         };
-        let mut forces: Vec<ContactForce> = self.pushes(forces).map(force).collect();
+        let mut forces: Vec<ContactForce> = self.pushes(forces).map(force).filter(|_| self.knows).collect();
         self.pressing = forces.len();
         forces.extend(self.rows.forces(resolver, self.newton.flags()));
-        let means = self.found.means(&self.finds, [start, &resolver.state().x]);
+        let means = match self.knows {
+            true => self.found.means(&self.finds, [start, &resolver.state().x]),
+            false => Vec::new(),
+        };
         self.carried = CarriedContacts { forces, means, yielding: self.limited.yielding().to_vec() };
     }
 
@@ -239,7 +243,7 @@ impl Contacts {
     /// they hold all bodies, and the residual does not count the vertices where they press.
     pub fn record_rows(&mut self, resolver: &Resolver) {
         self.rows.record(resolver, self.newton.flags());
-        if self.stiffness != 0.0 {
+        if self.knows {
             return;
         }
         let contacts = &resolver.state().contacts;
@@ -263,6 +267,10 @@ impl Contacts {
         // Pairs with the same features are one contact.
         let mut known = FxHashSet::default();
         near.retain(|contact| known.insert(contact.features));
+        if scene.friction_model() == FrictionModel::Filter {
+            // Friction follows from how deep the target is, of which a repulsion would leave a part only.
+            near.retain(|contact| !is_rough(scene, &state.contacts, contact.kind, contact.place));
+        }
         let of_contacts = near.par_iter().with_min_len(MIN_PAIRS);
         let spring = |contact: &NearContact| contact.spring(resolver, &self.newton, self.stiffness);
         let mut found = FoundContacts {
@@ -275,6 +283,13 @@ impl Contacts {
         };
         let shares: Vec<f64> = near.iter().map(|contact| contact.share).collect();
         share_stiffness(&mut found.springs, &shares, &found.distances, self.newton.flags());
+        if !self.knows {
+            for (spring, contact) in found.springs.iter_mut().zip(&near) {
+                *spring = contact.repulsion(*spring);
+            }
+            self.found = found;
+            return;
+        }
         let go_on = found.average(&self.found, &self.finds, self.stiffness, [start, &state.x]);
         for (spring, features) in found.springs.iter_mut().zip(&found.features) {
             spring.friction_ratio = self.memory.of(scene, features);
@@ -313,7 +328,7 @@ impl Contacts {
 
     /// Which of so many vertices have contacts that the dynamics knows; none if it knows no contacts.
     pub fn known(&self, count: usize) -> &[bool] {
-        if self.stiffness == 0.0 { &[] } else { &self.newton.flags()[..count] }
+        if self.knows { &self.newton.flags()[..count] } else { &[] }
     }
 
     /// Gives the springs to the dynamics.

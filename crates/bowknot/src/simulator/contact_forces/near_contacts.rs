@@ -11,6 +11,9 @@ use rayon::prelude::*;
 /// Gap at which the force of a contact vanishes, in the contact distance of the pair. Bodies rest below it.
 pub(super) const REACH: f64 = 1.2;
 
+/// Reach of a repulsion, in the contact distance of the pair: the paper's D_min, up to which its search knows all pairs.
+const REPULSION_REACH: f64 = 2.0;
+
 /// Gap at which the force becomes infinite, in the way from the minimum separation to the contact distance.
 const FLOOR: f64 = 0.4;
 
@@ -37,7 +40,7 @@ pub(super) struct NearContact {
     /// Contact distance and minimum separation of the pair [m].
     delta: f64,
     least: f64,
-    kind: PairKind,
+    pub kind: PairKind,
     /// Its place in the list of pairs.
     pub place: usize,
 }
@@ -70,6 +73,12 @@ impl NearContact {
             friction: contacts.frictions.get(place).copied().unwrap_or(0.0),
             friction_ratio: Vector::zeros(),
         }
+    }
+
+    /// Its `spring` as a mere repulsion (paper, section 6.2).
+    pub fn repulsion(&self, spring: RepulsionSpring) -> RepulsionSpring {
+        let reach = REPULSION_REACH * self.delta;
+        RepulsionSpring { kind: SpringKind::Repulsion, reach, friction: 0.0, ..spring }
     }
 }
 

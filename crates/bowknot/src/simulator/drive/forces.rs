@@ -10,8 +10,8 @@ impl Simulator {
     /// The contacts that carried a force at the end of the last time step, those of bodies asleep included.
     /// Also after a checkpoint was restored.
     ///
-    /// The list is made anew for each call. Where contacts have no springs (`solver.repulsion.stiffness = 0`,
-    /// or friction by the velocity filter) it holds those of grains with obstacles and with each other only.
+    /// The list is made anew for each call. Where the dynamics knows no contacts (`solver.repulsion.stiffness = 0`,
+    /// a quadratic law, or friction by the velocity filter) it holds those of grains with obstacles and with each other only.
     pub fn contacts(&self) -> Vec<Contact> {
         let carried = self.carried();
         carried

@@ -26,6 +26,18 @@ fn laws() -> Vec<NormalLaw> {
     laws
 }
 
+#[test]
+fn a_quadratic_law_is_a_spring_that_never_pulls() {
+    let law = NormalLaw::quadratic(K, REACH, FLOOR);
+    for gap in gaps() {
+        let depth = (REACH - gap).max(0.0);
+        let Push { force, stiffness } = law.at(gap);
+        assert!((force - K * depth).abs() <= 1e-12 * K * REACH, "{gap}: {force}");
+        assert_eq!(stiffness, if depth > 0.0 { K } else { 0.0 }, "{gap}");
+        assert!((law.energy(gap) - 0.5 * K * depth * depth).abs() <= 1e-12 * K * REACH * REACH, "{gap}");
+    }
+}
+
 /// Gaps from far below the floor to far above the reach.
 fn gaps() -> impl Iterator<Item = f64> {
     (-400..1200).map(|k| 1e-5 * (f64::from(k) + 0.37))
