@@ -126,9 +126,12 @@ fn list() -> Result<()> {
     let sets = record::PROBLEM_SETS.len();
     let scenes = record::contact_aware_scenes();
     let unaware = sets - scenes;
+    let repelled = record::REPELLED.len();
     let problems = format!(
-        "collision problems of {scenes} scenes in {sets} sets, as NPZ files: a set of each scene with \
-         contact-aware targets, and of {unaware} of them one with contact-unaware targets too"
+        "collision problems of {scenes} scenes in {} sets, as NPZ files: a set of each scene with \
+         contact-aware targets, of {unaware} of them one with contact-unaware targets too, and of {repelled} one with \
+         targets of the paper's repulsion",
+        sets + repelled
     );
     text += &line("record", &problems);
     text += &format!(

@@ -111,8 +111,8 @@ const OTHER_TIME_STEPS: [ProblemSet; 6] = [
     stepped("stack-unaware-20", UNAWARE_STACK, 0.05, [24, 14, 10]),
 ];
 
-/// Sets with targets of the paper's repulsion.
-const REPELLED: [ProblemSet; 6] = [
+/// Sets with targets of the paper's repulsion, for comparisons of methods; `record` writes them too.
+pub const REPELLED: [ProblemSet; 6] = [
     repelled("needle-repelled", UNAWARE_NEEDLE),
     repelled("stack-repelled", UNAWARE_STACK),
     repelled("tube-repelled", UNAWARE_TUBE),
@@ -199,7 +199,7 @@ impl ProblemSet {
 /// Records the problems that are missing and writes a list of all.
 pub fn all(bench: &Bench) -> Result<()> {
     let mut table = Table::new(["file", "scene", "time step", "vertices", "triangles", "command"]);
-    for set in &PROBLEM_SETS {
+    for set in PROBLEM_SETS.iter().chain(&REPELLED) {
         for file in set.files(bench)? {
             let states = States::read(&file)?;
             let step = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
