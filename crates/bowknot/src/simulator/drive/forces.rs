@@ -11,7 +11,8 @@ impl Simulator {
     /// Also after a checkpoint was restored.
     ///
     /// The list is made anew for each call. Where the dynamics knows no contacts (`solver.repulsion.stiffness = 0`,
-    /// a quadratic law, or friction by the velocity filter) it holds those of grains with obstacles and with each other only.
+    /// a quadratic law, or friction by the velocity filter) it holds those of grains with obstacles and with each
+    /// other only.
     pub fn contacts(&self) -> Vec<Contact> {
         let carried = self.carried();
         carried
