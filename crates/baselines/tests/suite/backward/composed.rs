@@ -141,7 +141,12 @@ fn contacts_that_keep_their_volume_stay_as_near_as_they_start_and_others_open() 
     };
     let (low, high) = gaps(preserving_volume(params(200)));
     assert!(low > 0.0045 && high < 0.0055, "{low} {high}");
-    let (low, high) = gaps(params(200));
+    let mut slowly = params(200);
+    slowly.contact.separation_speed = Some(0.224);
+    let (low, high) = gaps(slowly);
     // 20 delta a second, for 1/100 s.
     assert!(low > 0.0065 && high < 0.008, "{low} {high}");
+    // At once, to the whole contact distance.
+    let (low, high) = gaps(params(200));
+    assert!(low > 0.0111 && high < 0.012, "{low} {high}");
 }
