@@ -45,7 +45,7 @@ fn figures_are_listed_and_unknown_ones_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let list = text(&bench(&["list"], folder.path()).stdout);
     assert!(list.contains("collision-error") && list.contains("record"), "{list}");
-    assert!(list.contains("10 scenes") && list.contains("17 sets"), "{list}");
+    assert!(list.contains("10 scenes") && list.contains("23 sets"), "{list}");
     let line = list.lines().find(|line| line.starts_with("sweeps ")).expect("a line for each figure");
     assert!(line.contains(" s ") && line.contains("20 min"), "how long it takes: {line}");
     let refused = bench(&["fig-99", "--tiny"], folder.path());
