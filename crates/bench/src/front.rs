@@ -165,7 +165,7 @@ const TEXT: &str = "Above 1 Bowknot, with the preset `fast`, is better. Each row
                     means, with the smallest and largest in parentheses; CPU time of one thread unless a row says \
                     otherwise. What is stale gives no row.\n\n\
                     *Recorded problems*: the collision stage alone, without edge limits; contact-unaware targets, \
-                    then those of the paper's repulsion, then contact-aware ones. The methods are those of \
+                    then those of the paper's repulsion once they are measured, then contact-aware ones. The methods are those of \
                     `crates/baselines`; each ends after 4 s, and what has *not ended* then has a larger time and \
                     another error. *Error*: the distance to the solution of a separate solver where it found one, \
                     else the residuals. Impact zones, rigid ones too, keep no contact distance, barriers less of it \
