@@ -18,7 +18,7 @@ pub enum Targets {
 pub const UNAWARE_SUFFIX: &str = "-unaware";
 
 /// Suffix of the names of problem sets with targets of the paper's repulsion.
-pub const REPELLED_SUFFIX: &str = "-repelled";
+const REPELLED_SUFFIX: &str = "-repelled";
 
 impl Targets {
     /// The targets of the problem set of that name.

@@ -1,6 +1,6 @@
 //! The potential of contacts and friction by itself, for solvers other than [`crate::Dynamics`].
 
-use super::law::{NormalLaw, Push};
+use super::law::Push;
 use super::prepare::MIN_GRIP_SHARE;
 use super::spring::RepulsionSpring;
 use super::springs::Repulsion;
@@ -87,7 +87,7 @@ impl ContactPotential {
         repulsion.anchor(start);
         for (spring, s) in springs.iter().enumerate() {
             let (gap, _) = repulsion.gap_and_slip(spring, &watched);
-            let law = NormalLaw::new(s.stiffness, s.reach, s.floor, s.start_gap);
+            let law = s.law(s.stiffness, s.start_gap);
             let ratio = s.friction_ratio - s.normal * s.normal.dot(&s.friction_ratio);
             repulsion.states[spring] = SpringState {
                 law,

@@ -6,7 +6,7 @@
 //! own inertia, however stiff it is. And what lies under a stack carries what presses on it: a node is backed
 //! by the stiffness of the nodes at the other side of its closed contacts.
 
-use super::law::{MIN_BEND, NormalLaw};
+use super::law::MIN_BEND;
 use super::spring::SpringKind;
 use super::springs::Repulsion;
 use super::state::SpringState;
@@ -85,12 +85,11 @@ impl Repulsion {
                 return;
             }
             state.acts = true;
+            state.law = s.law(s.stiffness / compliance, self.start_gap(spring));
             if s.kind == SpringKind::Repulsion {
-                state.law = NormalLaw::quadratic(s.stiffness / compliance, s.reach, s.floor);
                 return;
             }
             let (gap, _) = self.gap_and_slip(spring, iterate);
-            state.law = NormalLaw::new(s.stiffness / compliance, s.reach, s.floor, self.start_gap(spring));
             state.law.set_drag(OPENING_TIME * rate, s.start_gap);
             // Before the law is bent: what friction was in the last time step does not depend on the iterate.
             let ratio = s.friction_ratio - s.normal * s.normal.dot(&s.friction_ratio);

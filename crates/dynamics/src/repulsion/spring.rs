@@ -1,5 +1,6 @@
 //! The springs that callers describe contacts by.
 
+use super::law::NormalLaw;
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
@@ -76,6 +77,16 @@ pub struct ContactLaw {
 }
 
 impl RepulsionSpring {
+    /// Its law without drag, with a stiffness in N/m and the gap at the start of the time step [m].
+    pub(super) fn law(&self, stiffness: f64, start: f64) -> NormalLaw {
+        match self.kind {
+            SpringKind::Repulsion => NormalLaw::quadratic(stiffness, self.reach, self.floor),
+            SpringKind::Contact | SpringKind::Limit => {
+                NormalLaw::new(stiffness, self.reach, self.floor, start)
+            }
+        }
+    }
+
     /// The spring of a pair with `separation` at `positions` [m], without friction at the start of the time step.
     /// `start` are the positions there. Its gap is the distance of the pair, and its gradient that of the
     /// distance.

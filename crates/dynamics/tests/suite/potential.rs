@@ -194,3 +194,30 @@ fn springs_that_cannot_be_are_refused_by_number() {
         assert!(matches!(found, Err(StepError::Repulsion { spring: 1, .. })), "{bad:?}");
     }
 }
+
+#[test]
+fn a_repulsion_has_the_energy_of_a_spring_at_any_depth() {
+    let mut random = Rng::with_seed(7);
+    for kind in KINDS {
+        let x = pair(&mut random, kind);
+        let contact = RepulsionSpring { friction: 0.0, ..spring(kind, &x, &x, Vector::zeros()) };
+        let repulsion = RepulsionSpring { kind: SpringKind::Repulsion, ..contact };
+        let potential = ContactPotential::new(&[repulsion], &x, &x).expect("a potential");
+        let gap = |x: &[Point]| {
+            let height = |k: usize| contact.weights[k] * contact.normal.dot(&x[k].coords);
+            (0..4).filter(|&k| contact.weights[k] != 0.0).map(height).sum::<f64>() - contact.offset
+        };
+        // From the reach to far below the floor.
+        for depth in [0.0, 0.1, 0.3, 1.0] {
+            let mut moved = x.clone();
+            moved[0] -= contact.normal * (depth / contact.weights[0]);
+            let missing = (LAW.reach - gap(&moved)).max(0.0);
+            let (force, energy) = (potential.forces(&moved)[0].normal, potential.energy(&moved));
+            assert!((force - LAW.stiffness * missing).abs() < 1e-9, "{kind:?} {depth}: {force}");
+            assert!(
+                (energy - 0.5 * LAW.stiffness * missing * missing).abs() < 1e-9,
+                "{kind:?} {depth}: {energy}"
+            );
+        }
+    }
+}
