@@ -53,7 +53,7 @@ pub fn quick(name: &str) -> String {
 
 /// How long a full run of a figure takes at most, in words.
 pub fn full(name: &str) -> &'static str {
-    // 17 sets of seconds to a few minutes each.
+    // Its sets take seconds to a few minutes each.
     if name == "record" { "1 h" } else { "20 min" }
 }
 

@@ -15,6 +15,7 @@ use bowknot_baselines::rows::{
 };
 use bowknot_baselines::zones::{ImpactZones, RigidZones, TwoPhase, ZoneGoal, ZoneParams, ZoneSolver};
 use bowknot_baselines::{Composed, Method};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// A method built from a problem, which holds the parameters.
@@ -163,12 +164,12 @@ impl Setting {
         size.pick(self.limit.unwrap_or(4.0), 0.5, 1.0)
     }
 
-    /// A key that distinguishes its measurements from those of other settings.
+    /// A key that distinguishes its measurements from those of other settings, and of this one with other parameters of
+    /// the two-way loop. Parameters of the other methods are in their name alone.
     pub fn key(&self) -> String {
-        match self.limit {
-            Some(seconds) => format!("{} within {seconds} s", self.name()),
-            None => self.name(),
-        }
+        let mut hasher = DefaultHasher::new();
+        format!("{:?} {:?}", self.params, self.limit).hash(&mut hasher);
+        format!("{} {:016x}", self.name(), hasher.finish())
     }
 
     fn add(&mut self, change: String) {

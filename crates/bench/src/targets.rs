@@ -7,8 +7,7 @@ use crate::bench::Size;
 pub enum Targets {
     /// Bowknot's dynamics with its repulsion: few targets are deep in penetration.
     Aware,
-    /// Bowknot's dynamics without repulsion: targets lie deep in penetration. The paper's simulator has a
-    /// repulsive model (section 6.2), so these are not the paper's targets.
+    /// Bowknot's dynamics without repulsion: targets lie deep in penetration.
     Unaware,
     /// Bowknot's dynamics with a repulsion of quadratic energy, as the paper has it.
     Repelled,

@@ -46,7 +46,7 @@ impl Figure for CollisionError {
                  that would still bring x closer to its target and that no active row forbids), the largest \
                  violation of a contact, and the largest excess of an edge over its limit, as a share, times \
                  the edge length. The reference comes from a separate solver of the problem as stated, which \
-                 shares nothing with any method, and is checked by its residuals. The problems are not \
+                 shares with the methods only masses and distances that define it, and is checked by its residuals. The problems are not \
                  convex: a method may end in another good minimum, nearer to its target. Edge limits of the \
                  problem refer to the rest lengths. \
                  `paper` limits edges against the start of the call and so solves another problem; `paper, \
@@ -57,8 +57,8 @@ impl Figure for CollisionError {
             }
             false => {
                 "The same with targets of a dynamics without repulsion (`--set \
-                 solver.repulsion.stiffness=0`), which lie deep in penetration. The paper's simulator has a \
-                 repulsive model (section 6.2); `contacts-alone` has targets of one. Hard problems have no \
+                 solver.repulsion.stiffness=0`), which lie deep in penetration. `contacts-alone` has targets of the \
+                 paper's repulsion too. Hard problems have no \
                  reference solution: the separate solver does not come to an end within its time. Barriers and \
                  impact zones have no edge limits, which is part of their error here; `contacts-alone` \
                  compares without limits."

@@ -67,8 +67,9 @@ impl Figure for LengthsSwept {
     }
 
     fn question(&self) -> &'static str {
-        "The distance delta that contacts keep, the stretch limit sigma and the minimum separation define \
-         the problem. So each value has a reference solution of its own. The states were recorded with a \
+        "The distance delta that contacts keep and the stretch limit sigma define the problem, so each of their \
+         values has a reference solution of its own. The minimum separation does not change the problem, only \
+         how the two-way method solves it. The states were recorded with a \
          delta of a tenth of the edge length, sigma = 1.1 and a minimum separation of a tenth of delta. \
          Another delta starts from gaps that were made with the recorded one, as in a scene whose settings \
          change. Three scenes with contact-unaware targets, one with contact-aware ones."

@@ -1,4 +1,4 @@
-//! CPU time and error of every method over those of `fast`: the first section of the page.
+//! CPU time and error of every method over those of `fast`: the second section of the page.
 
 use super::collision_error::{compared, finding};
 use super::contacts_alone;

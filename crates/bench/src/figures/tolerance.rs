@@ -33,8 +33,8 @@ impl Figure for Tolerance {
         "What does each method cost, and how exact is it, if all stop where no vertex would move by more than \
          tau, from 0.1 to 0.001 mean edge lengths? The two-way method stops by the distance that is left to \
          its target (`fast` and `paper` with the rule `travel`, and residuals of one edge length, which \
-         decide nothing), the barriers by the longest step of a vertex, impact zones when no row is off by \
-         more. Contacts alone, contact-unaware targets; the problems of `contacts-alone`."
+         decide nothing), the barriers by the longest step of a vertex, which may be shorter than what is \
+         left, impact zones when a sweep changes no row by more. Contacts alone, contact-unaware targets; the problems of `contacts-alone`."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {

@@ -1,5 +1,5 @@
-//! The quality of a result x of a collision problem, measured alike for every method by code that shares nothing with
-//! any of them.
+//! The quality of a result x of a collision problem, measured alike for every method. Its code shares with the methods
+//! only the lengths that define the problem: masses, contact distances and limits of edges.
 //!
 //! | file | holds |
 //! |---|---|

@@ -1,4 +1,5 @@
-//! The reference solution of a small problem, by a solver that shares nothing with any method (`augmented`).
+//! The reference solution of a small problem, by a solver (`augmented`) that shares with the methods only the lengths
+//! that define the problem.
 //!
 //! It is found from the start of the problem by three ways: straight to the target, and by way of targets in between,
 //! few and many; the last is left out if the others end badly. Each is a path that crosses nothing. Of those that end well the one with the least objective is the
