@@ -170,7 +170,7 @@ def section(records, versions, threads, load_before):
             motion stops it. The runs that reach the obstacle take {cheapest} to {dearest} times Bowknot's CPU time.""",
         caveats="""Newton's examples switch self-contact on and, all but one, leave the cut at obstacles off;
             its documentation calls the cut penetration-free, not the rest. Newton is made for GPUs; its CPU kernels run on one thread, and their times say
-            little about a GPU. Materials are similar, not equal. Bowknot has a stretch limit of 1.1,
+            little about a GPU. Materials are similar, not equal. Bowknot has a stretch limit of 1.05,
             which Newton has not. Bowknot's shortfall comes mostly from its stopping rule, which
             accepts a vertex within 0.01 edge lengths of its place.""",
         tables=[table(records)],

@@ -1,5 +1,6 @@
 """Times two programs in turns, and describes the machine."""
 
+import json
 import os
 import platform
 import statistics
@@ -85,13 +86,36 @@ def number(value, digits=3):
     return text if "e" in text else f"{value:.{max(digits - size, 0)}f}" if size else text
 
 
-def conditions(versions, threads, load_before):
-    """The commit, the versions and the machine, in one line."""
+class Kept:
+    """What was measured so far, in a file, so that a run that was stopped goes on."""
+
+    def __init__(self, path):
+        self._path = path
+        self._values = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        # The commits of what was asked for.
+        self.commits = []
+
+    def get(self, key, make):
+        """The value of that name, which is made now if it is not there."""
+        if key not in self._values:
+            self._values[key] = {"commit": _commit(), "value": make()}
+            self._path.write_text(json.dumps(self._values, indent=1), encoding="utf-8")
+        if self._values[key]["commit"] not in self.commits:
+            self.commits.append(self._values[key]["commit"])
+        return self._values[key]["value"]
+
+    def clear(self):
+        """Forgets all: the run is over."""
+        self._path.unlink(missing_ok=True)
+
+
+def conditions(versions, threads, load_before, commits=None):
+    """The commits, by default the present one, the versions and the machine, in one line."""
     info = _lines("/proc/cpuinfo")
     cpu = next((line.split(":", 1)[1].strip() for line in info if "model name" in line), None)
     peers = ", ".join(f"{name} {version}" for name, version in versions.items())
     return (
-        f"Commit {_commit()}; {peers}, Python {platform.python_version()}; {threads} of "
+        f"Commit {', '.join(commits or [_commit()])}; {peers}, Python {platform.python_version()}; {threads} of "
         f"{os.cpu_count()} cores, {cpu or platform.processor() or 'an unknown CPU'}; "
         f"load average {load_before} before, {load()} after."
     )

@@ -48,8 +48,6 @@ class Run:
     intersecting: int
     # Time between two frames [s].
     interval: float
-    # What rapier says of sleep; None of Bowknot, which the frames tell.
-    asleep: float | None = None
 
 
 def run(case, program, folder):
@@ -65,7 +63,7 @@ def _rapier(case, program, folder):
     options = ["--out", folder, "--size", case.size, "--seconds", case.seconds, "--dt", program.dt]
     options += ["--every", case.every, *program.options]
     report = json.loads(setting.call([setting.program("rapier"), case.scene, *options]))
-    return Run(report["cpu_s"], report["wall_s"], *_judge(folder, case, program), report["asleep_at_s"])
+    return Run(report["cpu_s"], report["wall_s"], *_judge(folder, case, program))
 
 
 def _bowknot(case, program, folder):

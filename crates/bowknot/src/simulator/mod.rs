@@ -116,6 +116,8 @@ pub(crate) struct Scratch {
     y: Vec<Point>,
     prescribed: Vec<bool>,
     keyframes: Vec<Point>,
+    /// The keyframes at the ends of the stages of the time step but the last, while bodies may sleep.
+    inner: Vec<Vec<Point>>,
     ends: Ends,
     finished: Finished,
     groups: Vec<u32>,

@@ -16,7 +16,7 @@ use super::report::{
 use super::sleep::SleepingBodies;
 use super::stretch_limits::HeldApart;
 use super::tolerance::Tolerance;
-use super::{MIN_VERTICES, Scratch, Simulator, time_of};
+use super::{MIN_VERTICES, Scratch, Simulator};
 use bowknot_dynamics::{Dynamics, Residual, StepError};
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::CollisionEvery;
@@ -103,9 +103,7 @@ impl Simulator {
     ) -> Result<(), SimulationError> {
         let (step, count, every) = (statistics.step, self.newton_iterations, self.collision_every);
         if !stage.is_whole() {
-            let (before, time) = (time_of(step - 1, self.dt), statistics.time);
-            let at = if stage.end == 1.0 { time } else { before + stage.end * self.dt };
-            self.lead_to(time, at, scratch);
+            self.lead_to(statistics.time, stage.end, scratch);
         }
         let target_error = |source| SimulationError::target(step, source);
         let done = statistics.newton_iterations;
@@ -171,13 +169,14 @@ impl NewtonIterations<'_> {
         let timer = Instant::now();
         let Scratch { start, x, y, prescribed, keyframes, ends, finished, .. } = &mut *self.scratch;
         self.dynamics.set_step_tolerance(self.stage.tolerance.meters());
+        let held_way = self.dynamics.params().integrator.held_way() * self.dt * self.dt;
         if self.stage.begin == 0.0 {
             self.dynamics.begin_step(start, velocities, self.dt)?;
-            self.contacts.begin_step(self.resolver, prescribed, start, self.length);
+            self.contacts.begin_step(self.resolver, prescribed, start, held_way);
         } else {
             start.clone_from(x);
             self.dynamics.next_stage(start, prescribed);
-            self.contacts.begin_stage(self.resolver, prescribed, start, self.length);
+            self.contacts.begin_stage(self.resolver, prescribed, start, held_way);
         }
         self.contacts.apply(self.dynamics)?;
         self.statistics.repulsion_springs = self.contacts.springs().len();

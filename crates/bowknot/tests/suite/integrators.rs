@@ -245,6 +245,42 @@ fn pins_end_at_their_keyframes() {
 }
 
 #[test]
+fn a_grain_that_rows_hold_presses_with_its_weight() {
+    let text = "[[body]]\nname = \"grains\"\nkind = \"particles\"\ntranslate = [0, 0, 0.0105]\n\
+                shape = { type = \"grains\", count = [1, 1, 1], spacing = 0.03 }\n\
+                material = { base = \"gravel\", radius = 0.01, density = 2000 }\n\
+                [[obstacle]]\nname = \"ground\"\nshape = \"half-space\"\n[solver.sleep]\nenabled = false\n";
+    for integrator in INTEGRATORS {
+        let mut simulator = simulator(text, integrator);
+        run(&mut simulator, 50);
+        let weight = 9.81 * 2000.0 * std::f64::consts::PI * 4.0 / 3.0 * 0.01_f64.powi(3);
+        let share = simulator.contact_forces()[0].z / weight;
+        assert!((share - 1.0).abs() < 0.01, "{integrator}: {share}");
+    }
+}
+
+#[test]
+fn what_a_program_leads_goes_at_a_constant_speed() {
+    let text = "[[body]]\nname = \"sheet\"\nshape = { type = \"sheet\", size = [0.3, 0.3], edge = 0.1 }\n\
+                [[pin]]\nbody = \"sheet\"\nside = \"x-min\"\n";
+    let velocity = Vector::new(0.1, 0.0, 0.3);
+    for integrator in INTEGRATORS {
+        let mut simulator = simulator(text, integrator);
+        let pinned: Vec<usize> = simulator.world().pins[0].vertices.iter().map(|&v| v as usize).collect();
+        let start: Vec<Point> = pinned.iter().map(|&v| simulator.positions()[v]).collect();
+        for step in 1..=10 {
+            let targets: Vec<Point> = start.iter().map(|x| x + velocity * 0.01 * f64::from(step)).collect();
+            simulator.set_pin_targets("pin[0] of sheet", &targets).expect("a pin");
+            run(&mut simulator, 1);
+            for &v in &pinned {
+                let error = simulator.velocities()[v] - velocity;
+                assert!(error.norm() < 1e-9, "{integrator}: {error}");
+            }
+        }
+    }
+}
+
+#[test]
 fn second_order_without_contact_forces_is_refused() {
     for set in
         ["contact.friction_model=filter", "solver.repulsion.law=quadratic", "solver.repulsion.stiffness=0"]

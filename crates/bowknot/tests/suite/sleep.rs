@@ -289,6 +289,28 @@ fn an_obstacle_that_moves_wakes_what_is_in_its_way() {
     }
 }
 
+/// With two stages in a time step an obstacle is led to two places, so it may come by and be back at its end.
+#[test]
+fn an_obstacle_that_is_back_at_the_end_of_a_time_step_wakes_what_it_meets() {
+    let plough = format!(
+        "{SLEEP}{}[[obstacle]]\nname = \"plough\"\nshape = {{ type = \"box\", size = [0.02, 0.3, 0.1] }}\n\
+         translate = [-0.5, 0, 0.1]\nmotion = {{ keyframes = [{{ time = 2.0, translate = [0, 0, 0] }}, \
+         {{ time = 2.003, translate = [1, 0, 0] }}, {{ time = 2.01, translate = [0, 0, 0] }}] }}\n{GROUND}",
+        pile("first", 0.0),
+    );
+    for (integrator, meets) in [("implicit-euler", false), ("sdirk2", true)] {
+        let sets = [format!("simulation.integrator={integrator}")];
+        let scene = scene(&plough).with_sets(&sets).expect("sound keys");
+        let mut simulator = Simulator::new(&scene).expect("a simulator");
+        rest(&mut simulator, &FIRST);
+        assert!(simulator.step_index() < 200, "asleep before the plough comes");
+        while simulator.step_index() < 201 {
+            step(&mut simulator);
+        }
+        assert_eq!(!simulator.asleep()[0], meets, "{integrator}");
+    }
+}
+
 #[test]
 fn what_nothing_holds_does_not_sleep() {
     let text = format!(

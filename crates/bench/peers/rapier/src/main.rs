@@ -11,6 +11,7 @@ mod world;
 
 use cpu_time::ProcessTime;
 use rapier3d::prelude::{SoftBodyCellModel, SoftBodySolver};
+use scenes::Skin;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -31,8 +32,8 @@ const USAGE: &str = "usage: bowknot-peer-rapier SCENE --out DIR [options]
   --neo-hookean    cells by that law instead of the corotational one
   --fem            the solver by finite elements";
 
-/// Half of the distance at which Bowknot holds contacts, in distances of neighbors.
-const BOWKNOT_RADIUS: f64 = 0.0625;
+/// Bowknot holds contacts at a distance, of which bodies have a half each and planes nothing.
+const BOWKNOT: Skin = Skin { side: 0.0625, on_plane: 0.125 };
 
 struct Options {
     scene: String,
@@ -102,9 +103,9 @@ fn count(name: &str, text: &str, least: usize) -> Result<usize, String> {
 }
 
 fn run(options: &Options) -> Result<(), String> {
-    let radius = if options.meshes { BOWKNOT_RADIUS } else { options.settings.radius };
-    let thickness = |spacing: f64| radius * spacing;
-    let scene = scenes::named(&options.scene, options.size, &thickness).ok_or(USAGE)?;
+    let radius = options.settings.radius;
+    let skin = if options.meshes { BOWKNOT } else { Skin { side: radius, on_plane: radius } };
+    let scene = scenes::named(&options.scene, options.size, &skin).ok_or(USAGE)?;
     let frames = options.out.join("frames");
     make_folder(if options.meshes { &options.out } else { &frames })?;
     if options.meshes {

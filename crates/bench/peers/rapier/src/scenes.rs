@@ -62,12 +62,19 @@ pub struct Scene {
     pub seconds: f64,
 }
 
+/// How far from the surface of a body its contacts begin, in distances of neighbors.
+pub struct Skin {
+    /// Toward another body, on each side.
+    pub side: f64,
+    /// Toward a plane.
+    pub on_plane: f64,
+}
+
 pub const NAMES: [&str; 6] = ["ball", "sheets", "ribbon", "slope", "stack", "pinch"];
 
-/// The scene `name`, or nothing; `size` is the number of vertices along a side of a sheet or a cube. `skin` is the
-/// thickness that surfaces have to each side, from the distance of neighbors [m]: what is to be in contact starts 1 mm
-/// farther apart.
-pub fn named(name: &str, size: Option<usize>, skin: &dyn Fn(f64) -> f64) -> Option<Scene> {
+/// The scene `name`, or nothing; `size` is the number of vertices along a side of a sheet or a cube. What is
+/// to be in contact starts 1 mm farther apart than its `skin`.
+pub fn named(name: &str, size: Option<usize>, skin: &Skin) -> Option<Scene> {
     Some(match name {
         "ball" => drape(size.unwrap_or(51), 1.0, 1, 0.12),
         "sheets" => drape(size.unwrap_or(41), 0.8, 5, 0.04),
@@ -115,10 +122,10 @@ fn ribbon(size: usize) -> Scene {
 }
 
 /// A cube of jelly on a slope.
-fn slope(size: usize, skin: &dyn Fn(f64) -> f64) -> Scene {
+fn slope(size: usize, skin: &Skin) -> Scene {
     let side = 0.1;
     let mesh = meshes::block([side; 3], [size; 3]);
-    let height = 0.5 * side + skin(mesh.spacing) + CLEARANCE;
+    let height = 0.5 * side + skin.on_plane * mesh.spacing + CLEARANCE;
     let (s, c) = TILT.to_radians().sin_cos();
     let place = |[x, y, z]: Point| [c * x + s * (z + height), y, c * (z + height) - s * x];
     let cube = Body { elastic: [1.0e5, 0.4], ..body("cube", mesh.moved(place)) };
@@ -127,24 +134,23 @@ fn slope(size: usize, skin: &dyn Fn(f64) -> f64) -> Scene {
 
 /// Five cubes on each other, turned against each other. A column of them stands: it would buckle under its own weight
 /// above 0.75 m.
-fn stack(size: usize, skin: &dyn Fn(f64) -> f64) -> Scene {
+fn stack(size: usize, skin: &Skin) -> Scene {
     let side = 0.08;
     let mesh = meshes::block([side; 3], [size; 3]);
-    let skin = skin(mesh.spacing);
     let mut bodies = Vec::new();
-    let mut height = 0.5 * side + skin + CLEARANCE;
+    let mut height = 0.5 * side + skin.on_plane * mesh.spacing + CLEARANCE;
     for (k, yaw) in [0.0_f64, 12.0, -7.0, 9.0, -12.0].into_iter().enumerate() {
         let (s, c) = yaw.to_radians().sin_cos();
-        let mesh = mesh.clone().moved(|[x, y, z]| [c * x - s * y, s * x + c * y, z + height]);
-        bodies.push(Body { elastic: [1.0e6, 0.4], ..body(format!("cube{k}"), mesh) });
-        height += side + 2.0 * skin + CLEARANCE;
+        let turned = mesh.clone().moved(|[x, y, z]| [c * x - s * y, s * x + c * y, z + height]);
+        bodies.push(Body { elastic: [1.0e6, 0.4], ..body(format!("cube{k}"), turned) });
+        height += side + 2.0 * skin.side * mesh.spacing + CLEARANCE;
     }
     let ground = Obstacle::Plane([0.0, 0.0, 1.0]);
     Scene { friction: 0.5, seconds: 2.0, ..scene(bodies, vec![ground]) }
 }
 
 /// Two stiff pads close on a hanging cloth, which is held at its upper edge until 0.5 s and by the pads from then on.
-fn pinch(size: usize, skin: &dyn Fn(f64) -> f64) -> Scene {
+fn pinch(size: usize, skin: &Skin) -> Scene {
     let (width, height) = (0.16, 0.24);
     let rows = (size - 1) * 3 / 2 + 1;
     // The sheet's x axis becomes z, its y axis stays.
@@ -153,12 +159,12 @@ fn pinch(size: usize, skin: &dyn Fn(f64) -> f64) -> Scene {
     let still = Motion { turn: 0.0, along: 0.0, end: 1.0 };
     let upper = ((rows - 1) * size) as u32..(rows * size) as u32;
     cloth.grips.push(Grip { vertices: upper.collect(), motion: still, end: 0.5 });
-    let cloth_skin = skin(cloth.mesh.spacing);
+    let cloth_skin = skin.side * cloth.mesh.spacing;
     let mut bodies = vec![cloth];
     for (name, sign) in [("left", -1.0), ("right", 1.0)] {
         // rapier takes tetrahedra below its float's epsilon, 0.12 cm3, for degenerate: they would have no elasticity.
         let (thickness, mesh) = (0.02, meshes::block([0.02, 0.04, 0.02], [3, 5, 3]));
-        let away = 0.5 * thickness + skin(mesh.spacing) + cloth_skin + CLEARANCE;
+        let away = 0.5 * thickness + skin.side * mesh.spacing + cloth_skin + CLEARANCE;
         let mesh = mesh.moved(|[x, y, z]| [x + sign * away, y, z + 0.5 * height - 0.03]);
         let back = sign * (away + 0.5 * thickness);
         let held =

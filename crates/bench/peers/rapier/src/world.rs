@@ -1,10 +1,10 @@
-//! A scene in rapier: soft bodies as its constructors make them, in single precision.
+//! A scene in rapier: soft bodies with what its constructors choose where the scene says nothing else, in single precision.
 
 use crate::meshes::{Mesh, Point};
 use crate::scenes::{Body, CLOTH_DENSITY, CLOTH_STIFFNESS, Obstacle, SOLID_DENSITY, Scene};
 use rapier3d::prelude::*;
 
-/// What is varied; `Default` is what rapier's constructors choose.
+/// What is varied; `Default` is what rapier chooses, but for the cells: its own have no Young's modulus.
 pub struct Settings {
     /// Solver iterations, which are substeps.
     pub substeps: usize,
@@ -100,7 +100,8 @@ fn soft_body(body: &Body, friction: Real, settings: &Settings) -> SoftBodyBuilde
     let builder = SoftBodyBuilder::new(mesh.points.iter().map(|&p| vector(p)).collect())
         .masses(masses(mesh))
         .particle_radius((settings.radius * mesh.spacing) as Real)
-        .self_contacts(true)
+        // Off by default. Cloth folds, the solids here do not.
+        .self_contacts(mesh.tets.is_empty())
         .solver(settings.solver)
         .surface_collider(ColliderBuilder::ball(0.05).density(0.0).friction(friction))
         .pinned_particles(body.grips.iter().flat_map(|grip| grip.vertices.iter().copied()));

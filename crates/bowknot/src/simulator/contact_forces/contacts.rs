@@ -118,14 +118,15 @@ impl Contacts {
     }
 
     /// Begins a time step at the positions `start`, in which nothing touches yet. See [`Self::begin_stage`].
-    pub fn begin_step(&mut self, resolver: &Resolver, prescribed: &[bool], start: &[Point], dt: f64) {
+    pub fn begin_step(&mut self, resolver: &Resolver, prescribed: &[bool], start: &[Point], held_way: f64) {
         self.touching = Touching::default();
-        self.begin_stage(resolver, prescribed, start, dt);
+        self.begin_stage(resolver, prescribed, start, held_way);
     }
 
-    /// Begins a stage of a time step at the positions `start`, in which implicit Euler goes on by `dt` [s]. It
-    /// finds the contacts from positions and what is carried alone, so that a resumed run finds the same.
-    pub fn begin_stage(&mut self, resolver: &Resolver, prescribed: &[bool], start: &[Point], dt: f64) {
+    /// Begins a stage of a time step at the positions `start`, in which an acceleration of 1 m/s² leads what is held at
+    /// rest `held_way` [m] far. It finds the contacts from positions and what is carried alone, so that a resumed run
+    /// finds the same.
+    pub fn begin_stage(&mut self, resolver: &Resolver, prescribed: &[bool], start: &[Point], held_way: f64) {
         let (rest, before) = (resolver.scene().rest(), &self.carried.yielding);
         if self.held.begin_step(self.limited.edges(), [rest, start], prescribed, before) {
             self.limited.set_limits(self.held.limits());
@@ -141,7 +142,7 @@ impl Contacts {
         self.found = FoundContacts::from_means(&means);
         self.counted.copy_from_slice(self.newton.flags());
         self.memory = FrictionMemory::new(resolver.scene(), forces);
-        self.rows.begin_step(resolver.scene(), forces, self.newton.flags(), dt);
+        self.rows.begin_stage(resolver.scene(), forces, self.newton.flags(), held_way);
         self.find(resolver, start);
     }
 

@@ -23,10 +23,17 @@ pub(super) struct RowForces {
 }
 
 impl RowForces {
-    /// Begins a time step of `dt` [s] with the contact forces at the end of the last one. Vertices that are
-    /// `solved` are those whose contacts the dynamics knows.
-    pub fn begin_step(&mut self, scene: &CollisionScene, carried: &[ContactForce], solved: &[bool], dt: f64) {
-        self.scale = scene.mean_mass() / (dt * dt);
+    /// Begins a stage of a time step with the contact forces at the end of the last one. In it an acceleration of 1 m/s²
+    /// leads what is held at rest `held_way` [m] far. Vertices that are `solved` are those whose contacts the dynamics
+    /// knows.
+    pub fn begin_stage(
+        &mut self,
+        scene: &CollisionScene,
+        carried: &[ContactForce],
+        solved: &[bool],
+        held_way: f64,
+    ) {
+        self.scale = scene.mean_mass() / held_way;
         let topology = scene.model().topology();
         let is_row = |force: &&ContactForce| {
             // The features of a checkpoint may be anything.

@@ -105,8 +105,11 @@ impl Simulator {
             }
             let known: Option<Vec<Vector>> =
                 pin.vertices.iter().map(|&v| dynamics.holding_force(v)).collect();
-            if let Some(known) = known {
-                *forces = known;
+            match known {
+                Some(known) => *forces = known,
+                // A device does not tell them, and those of an earlier time step are no longer right.
+                None if dynamics.backend().is_some() => forces.clear(),
+                None => {}
             }
         }
     }

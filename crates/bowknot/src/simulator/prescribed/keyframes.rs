@@ -1,7 +1,8 @@
 //! Which vertices are prescribed in a time step, where to, and which of them lag behind.
 
-use crate::simulator::{Scratch, Simulator};
+use crate::simulator::{Scratch, Simulator, time_of};
 use bowknot_geometry::Point;
+use bowknot_scene::world::ObstacleMotion;
 use bowknot_twoway::ResolveInput;
 use std::collections::BTreeMap;
 
@@ -12,20 +13,35 @@ impl Simulator {
     /// Fills in which vertices are prescribed at `time`, the end of the time step, and their keyframes. The
     /// vertices of a pin form a group: they move by one fraction of their way.
     pub(crate) fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
-        self.place_prescribed(time, time, scratch);
+        let ends = self.dynamics.params().integrator.stage_ends();
+        let inner = if self.sleeping.is_some() { &ends[..ends.len() - 1] } else { &[] };
+        scratch.inner.resize_with(inner.len(), Vec::new);
+        for (stage, &share) in inner.iter().enumerate() {
+            self.place_prescribed(time, share, scratch);
+            scratch.inner[stage].clone_from(&scratch.keyframes);
+        }
+        self.place_prescribed(time, 1.0, scratch);
     }
 
     /// Places the keyframes of the vertices that are prescribed in a time step that ends at `time`, with those of
-    /// bodies asleep, where they are at the end of a stage of it, `at`.
-    pub(crate) fn lead_to(&mut self, time: f64, at: f64, scratch: &mut Scratch) {
+    /// bodies asleep, where they are at the end of a stage of it, after that share of the time step.
+    pub(crate) fn lead_to(&mut self, time: f64, share: f64, scratch: &mut Scratch) {
         let prescribed = scratch.prescribed.clone();
-        self.place_prescribed(time, at, scratch);
+        self.place_prescribed(time, share, scratch);
         scratch.prescribed = prescribed;
     }
 
-    fn place_prescribed(&mut self, time: f64, at: f64, scratch: &mut Scratch) {
+    /// What has a motion over time is where it is then. What a program has placed for the end of the time step goes
+    /// there at a constant speed.
+    fn place_prescribed(&mut self, time: f64, share: f64, scratch: &mut Scratch) {
+        let at = if share == 1.0 { time } else { time_of(self.step, self.dt) + share * self.dt };
         let Self { world, anchors, attachments, positions, dt, .. } = self;
         let Scratch { prescribed, keyframes, groups, .. } = scratch;
+        let go = |keyframe: &mut Point, start: &Point| {
+            if share != 1.0 {
+                *keyframe = start + (*keyframe - start) * share;
+            }
+        };
         let count = world.collision_vertices();
         prescribed.clear();
         prescribed.resize(positions.len(), false);
@@ -35,7 +51,10 @@ impl Simulator {
         for body in world.bodies.iter().filter(|body| body.kind.is_none()) {
             let range = body.vertices.start as usize..body.vertices.end as usize;
             prescribed[range.clone()].fill(true);
-            body.motion.positions(&world.base[range.clone()], at, &mut keyframes[range]);
+            body.motion.positions(&world.base[range.clone()], at, &mut keyframes[range.clone()]);
+            if matches!(body.motion, ObstacleMotion::Placed(_)) {
+                keyframes[range.clone()].iter_mut().zip(&positions[range]).for_each(|(k, x)| go(k, x));
+            }
         }
         for (index, ((pin, anchor), attachments)) in
             world.pins.iter().zip(anchors).zip(attachments).enumerate()
@@ -62,7 +81,14 @@ impl Simulator {
                 let home = anchor.get(k).unwrap_or(&world.positions[v]);
                 prescribed[v] = true;
                 let followed = attachments.get(k).and_then(|a| a.as_ref()?.place(keyframes));
-                let led = || place.map_or(*home, |place| place.apply(home));
+                let led = || {
+                    let mut led = *home;
+                    match place {
+                        Some(place) => led = place.apply(home),
+                        None => go(&mut led, &positions[v]),
+                    }
+                    led
+                };
                 keyframes[v] = followed.unwrap_or_else(led);
                 if v < count {
                     groups[v] = index as u32;

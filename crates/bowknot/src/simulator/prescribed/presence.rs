@@ -72,6 +72,7 @@ impl Simulator {
             let (bodies, half_spaces) = changed.split_at(world.bodies.len());
             let motion = Motion {
                 start: &positions[..world.collision_vertices()],
+                inner: &[],
                 end: &positions[..world.collision_vertices()],
                 margins: &sleeping.margins,
                 asleep: &sleeping.asleep,

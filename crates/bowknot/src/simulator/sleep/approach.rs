@@ -1,13 +1,14 @@
 //! Which bodies asleep something comes near in a time step.
 //!
 //! Elements of a body are covered by boxes around their vertices' places at the start and at the end of the
-//! time step. An element that moves along straight lines stays in its box, since the box is convex.
+//! time step, and at the ends of its stages in between, if the integrator has several. An element that moves along
+//! straight lines from one to the next stays in its box, since the box is convex.
 //!
 //! **This test is part of the guarantee.** Bodies asleep are obstacles for the collision stage, and two
 //! obstacles never form a pair. So nothing but this test keeps an obstacle that moves away from them. It
-//! holds because the places at the end are the obstacle's keyframes: the collision stage moves each of its
-//! vertices along the straight line from its place to its keyframe, a part of the way at a time, and never
-//! beyond. Bodies that are awake form pairs with those asleep, so the collision stage keeps them apart
+//! holds because the places at the ends of stages are the obstacle's keyframes: in each stage the collision stage
+//! moves each of its vertices along the straight line from its place to its keyframe, a part of the way at a time, and
+//! never beyond, and a place on the way lies in the box of what came before. Bodies that are awake form pairs with those asleep, so the collision stage keeps them apart
 //! wherever they go, and a place at the end that is only predicted does no harm: what wakes later than it is
 //! touched has been an unyielding obstacle for a moment. For the same reason bodies at rest need not count as
 //! movers. If they did, two that are near each other without touching would wake each other in turn for ever.
@@ -25,6 +26,8 @@ pub(crate) struct BodyElements {
 pub(crate) struct Motion<'a> {
     /// At its start.
     pub start: &'a [Point],
+    /// Of what is prescribed at the end of each stage but the last; others are where they were at the start.
+    pub inner: &'a [Vec<Point>],
     /// At its end.
     pub end: &'a [Point],
     /// Distance around each body within which it is in contact, its part [m].
@@ -35,6 +38,18 @@ pub(crate) struct Motion<'a> {
     pub at_rest: &'a [bool],
     /// Which obstacles appear or vanish, and so count as movers; empty: none.
     pub changed: &'a [bool],
+}
+
+impl Motion<'_> {
+    /// Where a vertex is at the ends of the stages.
+    fn later(&self, v: usize) -> impl Iterator<Item = &Point> {
+        self.inner.iter().map(move |places| &places[v]).chain([&self.end[v]])
+    }
+
+    /// The same with its start.
+    fn places(&self, v: usize) -> impl Iterator<Item = &Point> {
+        [&self.start[v]].into_iter().chain(self.later(v))
+    }
 }
 
 impl BodyElements {
@@ -63,7 +78,7 @@ impl BodyElements {
             match world.bodies[body].kind {
                 Some(_) => !motion.at_rest[body],
                 None if motion.changed.get(body) == Some(&true) => true,
-                None => vertices.map(|v| v as usize).any(|v| motion.start[v] != motion.end[v]),
+                None => vertices.map(|v| v as usize).any(|v| motion.later(v).any(|x| *x != motion.start[v])),
             }
         };
         let movers: Vec<usize> = bodies.clone().filter(|&b| !motion.asleep[b] && moves(b)).collect();
@@ -82,17 +97,15 @@ impl BodyElements {
     }
 
     fn bounds(world: &World, body: usize, motion: &Motion<'_>) -> Aabb {
-        let vertices = &world.bodies[body].vertices;
-        let range = vertices.start as usize..vertices.end as usize;
-        Aabb::of_points(motion.start[range.clone()].iter().chain(&motion.end[range]))
-            .inflated(motion.margins[body])
+        let vertices = world.bodies[body].vertices.clone().map(|v| v as usize);
+        Aabb::of_points(vertices.flat_map(|v| motion.places(v))).inflated(motion.margins[body])
     }
 
     /// The boxes of a body's elements that meet the box of another body.
     fn bounds_near(&self, body: usize, other: &Aabb, motion: &Motion<'_>) -> Vec<Aabb> {
         let bounds = |element: &[u32; 3]| {
             let vertices = element.iter().map(|&v| v as usize);
-            let points = vertices.flat_map(|v| [&motion.start[v], &motion.end[v]]);
+            let points = vertices.flat_map(|v| motion.places(v));
             Aabb::of_points(points).inflated(motion.margins[body])
         };
         self.of_bodies[body].iter().map(bounds).filter(|own| own.overlaps(other)).collect()

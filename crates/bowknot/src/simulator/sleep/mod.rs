@@ -11,6 +11,7 @@ mod waking;
 pub(crate) use approach::Motion;
 pub use islands::SleepState;
 
+use super::Scratch;
 use super::contact_forces::ContactForce;
 use super::custom_elements::moving_elements;
 use super::error::SimulationError;
@@ -99,16 +100,17 @@ impl SleepingBodies {
             && world.bodies.iter().zip(&self.asleep).all(|(body, asleep)| body.kind.is_none() || *asleep)
     }
 
-    /// Records which bodies have vertices that are `prescribed`, and whether these move from `start` to their
-    /// `keyframes` [m].
-    pub fn record_hold(&mut self, world: &World, prescribed: &[bool], keyframes: &[Point], start: &[Point]) {
+    /// Records which bodies have vertices that are prescribed, and whether these move in the time step.
+    pub fn record_hold(&mut self, world: &World, scratch: &Scratch) {
+        let Scratch { prescribed, keyframes, inner, start, .. } = scratch;
+        let moves = |v: usize| keyframes[v] != start[v] || inner.iter().any(|x| x[v] != start[v]);
         let Hold { held, moved } = &mut self.hold;
         held.clear();
         moved.clear();
         for body in &world.bodies {
             let vertices = || body.vertices.clone().chain(body.interior.clone()).map(|v| v as usize);
             held.push(vertices().any(|v| prescribed[v]));
-            moved.push(vertices().any(|v| prescribed[v] && keyframes[v] != start[v]));
+            moved.push(vertices().any(|v| prescribed[v] && moves(v)));
         }
     }
 }

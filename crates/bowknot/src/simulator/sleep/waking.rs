@@ -22,7 +22,7 @@ impl Simulator {
     pub(crate) fn wake_for_step(&mut self, time: f64, scratch: &mut Scratch) -> Result<(), SimulationError> {
         let mut wakes = std::mem::take(&mut self.driven.pushed);
         let Some(sleeping) = &mut self.sleeping else { return Ok(()) };
-        sleeping.record_hold(&self.world, &scratch.prescribed, &scratch.keyframes, &scratch.start);
+        sleeping.record_hold(&self.world, scratch);
         if wakes.contains(&true) {
             sleeping.sleep.stir();
         }
@@ -46,6 +46,7 @@ impl Simulator {
         let at_rest: Vec<bool> = sleeping.sleep.state.calm_steps.iter().map(|steps| *steps > 0).collect();
         let motion = Motion {
             start: &scratch.start[..count],
+            inner: &scratch.inner,
             end: &sleeping.predicted[..count],
             margins: &sleeping.margins,
             asleep: &sleeping.asleep,

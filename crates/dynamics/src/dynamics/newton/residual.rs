@@ -22,7 +22,8 @@ impl Newton<'_> {
             let nodes = (component.start as usize..component.end as usize).filter(|&n| self.free[n]);
             let mass: f64 = nodes.map(|n| self.model.node_masses[n]).sum();
             let own = if mass > 0.0 { self.dt * (product / mass).sqrt() } else { 0.0 };
-            if own > distance {
+            // One that is not a number stays: such a step is not solved.
+            if own > distance || own.is_nan() {
                 distance = own;
                 vertex = Some(self.model.node_vertex[component.start as usize]);
             }
