@@ -96,6 +96,7 @@ impl Bench {
         self.figure_timer.set(Instant::now());
         self.out_of_time.set(false);
         self.store.take_commits();
+        self.store.take_references();
     }
 
     /// Records problems, which takes nothing of a full figure's time: what it measures must not depend on whether they
@@ -134,6 +135,10 @@ impl Bench {
         let mut commits = self.store.take_commits().join(", ");
         if commits.is_empty() {
             commits.clone_from(&self.machine.commit);
+        }
+        let references = self.store.take_references();
+        if !references.is_empty() {
+            commits += &format!("; references of {}", references.join(", "));
         }
         let threads = counted(rayon::current_num_threads(), "thread", "threads");
         let missing = if self.out_of_time.get() { " Out of time: the rest was not measured." } else { "" };

@@ -15,6 +15,8 @@ pub struct Store {
     commit: String,
     /// Commits of the measurements asked for since [`Store::take_commits`].
     commits: RefCell<BTreeSet<String>>,
+    /// The same of reference solutions, which do not depend on the solver that is measured.
+    references: RefCell<BTreeSet<String>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -26,14 +28,19 @@ struct Cell<T> {
 
 impl Store {
     pub fn new(folder: &Path, commit: &str) -> Self {
-        Self { folder: folder.to_owned(), commit: commit.to_owned(), commits: RefCell::default() }
+        Self {
+            folder: folder.to_owned(),
+            commit: commit.to_owned(),
+            commits: RefCell::default(),
+            references: RefCell::default(),
+        }
     }
 
     /// The measurement of that key if there is one.
     pub fn find<T: DeserializeOwned>(&self, key: &str) -> Option<T> {
         let text = fs::read_to_string(self.path(key)).ok()?;
         let cell: Cell<T> = serde_json::from_str(&text).ok()?;
-        self.commits.borrow_mut().insert(cell.commit);
+        self.commits_of(key).borrow_mut().insert(cell.commit);
         Some(cell.value)
     }
 
@@ -57,7 +64,7 @@ impl Store {
         let partial = path.with_extension("partial");
         fs::write(&partial, text).with_context(|| format!("cannot write {}", partial.display()))?;
         fs::rename(&partial, &path).with_context(|| format!("cannot write {}", path.display()))?;
-        self.commits.borrow_mut().insert(self.commit.clone());
+        self.commits_of(key).borrow_mut().insert(self.commit.clone());
         Ok(cell.value)
     }
 
@@ -83,12 +90,24 @@ impl Store {
         std::mem::take(&mut *self.commits.borrow_mut()).into_iter().collect()
     }
 
+    /// The commits of the reference solutions asked for since the last call.
+    pub fn take_references(&self) -> Vec<String> {
+        std::mem::take(&mut *self.references.borrow_mut()).into_iter().collect()
+    }
+
+    fn commits_of(&self, key: &str) -> &RefCell<BTreeSet<String>> {
+        if key.starts_with(REFERENCE) { &self.references } else { &self.commits }
+    }
+
     /// Keys are paths with `/`; characters that file names should not have become `_`.
     fn path(&self, key: &str) -> PathBuf {
         let plain = |c: char| if c.is_ascii_alphanumeric() || "/.-=+".contains(c) { c } else { '_' };
         self.folder.join(format!("{}.json", key.chars().map(plain).collect::<String>()))
     }
 }
+
+/// Keys of reference solutions begin so.
+pub const REFERENCE: &str = "reference/";
 
 /// The file in a folder that names the commits which have measured in it, one per line.
 const COMMITS: &str = "commits.txt";
@@ -115,6 +134,10 @@ mod tests {
         let later = Store::new(folder.path(), "second");
         let again = later.measured("a/b c", || panic!("measured again")).expect("read");
         assert_eq!((1.5, vec!["first".to_owned()]), (again, later.take_commits()));
+        // References do not age with the solver.
+        later.measured("reference/a", || Ok(1)).expect("written");
+        let named = (later.take_commits(), later.take_references());
+        assert_eq!(named, (Vec::new(), vec!["second".to_owned()]));
         // A file that holds something else is measured anew.
         assert_eq!(later.measured("a/b c", || Ok("text".to_owned())).expect("written"), "text");
     }

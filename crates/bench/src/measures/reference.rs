@@ -13,6 +13,7 @@ use super::augmented::project;
 use super::evaluator::CaseEvaluator;
 use crate::bench::Bench;
 use crate::case::CollisionCase;
+use crate::store::REFERENCE;
 use anyhow::Result;
 use bowknot::geometry::Point;
 use serde::{Deserialize, Serialize};
@@ -58,7 +59,7 @@ fn solution(bench: &Bench, case: &CollisionCase) -> Result<Option<Vec<Point>>> {
         if number == 2 && best.is_none() {
             break;
         }
-        let found: Found = bench.store.measured(&format!("reference/{}/{number}", case.name), || {
+        let found: Found = bench.store.measured(&format!("{REFERENCE}{}/{number}", case.name), || {
             find(case, shares, bench.size.pick(90.0, 4.0, 1.0))
         })?;
         if !found.x.is_empty() && best.as_ref().is_none_or(|best| found.objective < best.objective) {
