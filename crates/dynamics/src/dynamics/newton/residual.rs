@@ -21,6 +21,8 @@ impl Newton<'_> {
         for (component, product) in self.model.components.iter().zip(&imbalance.products) {
             let nodes = (component.start as usize..component.end as usize).filter(|&n| self.free[n]);
             let mass: f64 = nodes.map(|n| self.model.node_masses[n]).sum();
+            // Near 0 rounding in single precision may make the product negative.
+            let product = if *product < 0.0 { 0.0 } else { *product };
             let own = if mass > 0.0 { self.dt * (product / mass).sqrt() } else { 0.0 };
             // One that is not a number stays: such a step is not solved.
             if own > distance || own.is_nan() {
