@@ -11,7 +11,6 @@ mod waking;
 pub(crate) use approach::Motion;
 pub use islands::SleepState;
 
-use super::Scratch;
 use super::contact_forces::ContactForce;
 use super::custom_elements::moving_elements;
 use super::error::SimulationError;
@@ -100,10 +99,10 @@ impl SleepingBodies {
             && world.bodies.iter().zip(&self.asleep).all(|(body, asleep)| body.kind.is_none() || *asleep)
     }
 
-    /// Records which bodies have vertices that are prescribed, and whether these move in the time step.
-    pub fn record_hold(&mut self, world: &World, scratch: &Scratch) {
-        let Scratch { prescribed, keyframes, inner, start, .. } = scratch;
-        let moves = |v: usize| keyframes[v] != start[v] || inner.iter().any(|x| x[v] != start[v]);
+    /// Records which bodies have vertices that are `prescribed`, and whether these move from `start` to where they are
+    /// `led` at the ends of stages [m].
+    pub fn record_hold(&mut self, world: &World, prescribed: &[bool], start: &[Point], led: &[&[Point]]) {
+        let moves = |v: usize| led.iter().any(|x| x[v] != start[v]);
         let Hold { held, moved } = &mut self.hold;
         held.clear();
         moved.clear();

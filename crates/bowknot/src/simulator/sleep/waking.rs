@@ -7,7 +7,7 @@ use crate::simulator::contact_forces::CarriedContacts;
 use crate::simulator::error::SimulationError;
 use crate::simulator::{Scratch, Simulator, time_of};
 use bowknot_dynamics::{Dynamics, Energies};
-use bowknot_geometry::Vector;
+use bowknot_geometry::{Point, Vector};
 
 impl Simulator {
     /// Which bodies of the world sleep during the next time step, see [`bowknot_scene::SleepParams`]. Empty
@@ -22,7 +22,9 @@ impl Simulator {
     pub(crate) fn wake_for_step(&mut self, time: f64, scratch: &mut Scratch) -> Result<(), SimulationError> {
         let mut wakes = std::mem::take(&mut self.driven.pushed);
         let Some(sleeping) = &mut self.sleeping else { return Ok(()) };
-        sleeping.record_hold(&self.world, scratch);
+        let Scratch { prescribed, start, inner, keyframes, .. } = &*scratch;
+        let led: Vec<&[Point]> = inner.iter().chain([keyframes]).map(Vec::as_slice).collect();
+        sleeping.record_hold(&self.world, prescribed, start, &led);
         if wakes.contains(&true) {
             sleeping.sleep.stir();
         }
