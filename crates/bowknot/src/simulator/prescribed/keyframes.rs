@@ -37,10 +37,8 @@ impl Simulator {
         let at = if share == 1.0 { time } else { time_of(self.step, self.dt) + share * self.dt };
         let Self { world, anchors, attachments, positions, dt, .. } = self;
         let Scratch { prescribed, keyframes, groups, .. } = scratch;
-        let go = |keyframe: &mut Point, start: &Point| {
-            if share != 1.0 {
-                *keyframe = start + (*keyframe - start) * share;
-            }
+        let on_the_way = |end: Point, start: &Point| {
+            if share == 1.0 { end } else { start + (end - start) * share }
         };
         let count = world.collision_vertices();
         prescribed.clear();
@@ -53,7 +51,8 @@ impl Simulator {
             prescribed[range.clone()].fill(true);
             body.motion.positions(&world.base[range.clone()], at, &mut keyframes[range.clone()]);
             if matches!(body.motion, ObstacleMotion::Placed(_)) {
-                keyframes[range.clone()].iter_mut().zip(&positions[range]).for_each(|(k, x)| go(k, x));
+                let ways = keyframes[range.clone()].iter_mut().zip(&positions[range]);
+                ways.for_each(|(keyframe, start)| *keyframe = on_the_way(*keyframe, start));
             }
         }
         for (index, ((pin, anchor), attachments)) in
@@ -81,14 +80,8 @@ impl Simulator {
                 let home = anchor.get(k).unwrap_or(&world.positions[v]);
                 prescribed[v] = true;
                 let followed = attachments.get(k).and_then(|a| a.as_ref()?.place(keyframes));
-                let led = || {
-                    let mut led = *home;
-                    match place {
-                        Some(place) => led = place.apply(home),
-                        None => go(&mut led, &positions[v]),
-                    }
-                    led
-                };
+                let led =
+                    || place.map_or_else(|| on_the_way(*home, &positions[v]), |place| place.apply(home));
                 keyframes[v] = followed.unwrap_or_else(led);
                 if v < count {
                     groups[v] = index as u32;

@@ -8,8 +8,8 @@
 //! obstacles never form a pair. So nothing but this test keeps an obstacle that moves away from them. It
 //! holds because the places at the ends of stages are the obstacle's keyframes: in each stage the collision stage
 //! moves each of its vertices along the straight line from its place to its keyframe, a part of the way at a time, and
-//! never beyond, and a place on the way lies in the box of what came before. Bodies that are awake form pairs with those asleep, so the collision stage keeps them apart
-//! wherever they go, and a place at the end that is only predicted does no harm: what wakes later than it is
+//! never beyond, and a place on the way lies in the box of what came before. Bodies that are awake form pairs with
+//! those asleep, so the collision stage keeps them apart wherever they go, and a place at the end that is only predicted does no harm: what wakes later than it is
 //! touched has been an unyielding obstacle for a moment. For the same reason bodies at rest need not count as
 //! movers. If they did, two that are near each other without touching would wake each other in turn for ever.
 
