@@ -31,7 +31,8 @@ pub struct Outcome {
     pub searches: usize,
     /// Whether the method's own stopping rule was met.
     pub converged: bool,
-    /// Whether the method failed: it found no way without intersections.
+    /// Whether the method failed: it gave up without a way free of intersections. One that ran out of time is
+    /// only not `converged`.
     pub failed: bool,
     /// Wall seconds by stage; 0 for stages that a method does not have.
     pub seconds: StageSeconds,

@@ -170,8 +170,7 @@ const TEXT: &str = "Above 1 Bowknot, with the preset `fast`, is better. Each row
                     is stopped: it would take longer, and its error is that of an unfinished result. *Error*: the \
                     distance to the solution of a separate solver where it found one, else the residuals. Impact \
                     zones, rigid ones too, keep no contact distance, barriers less of it where something presses, \
-                    Bowknot half of it in sharp folds. Impact zones that run out of time count as failed. IPC looks \
-                    at pairs within four contact distances, which costs time that its barrier does not need.";
+                    Bowknot half of it in sharp folds.";
 
 /// `paper`, the barrier of IPC, and of all other methods that failed on no problem the most accurate and the fastest.
 fn stage(published: &Published) -> Result<Vec<Comparison>> {

@@ -30,6 +30,9 @@ pub struct Entry {
     build: fn(CollisionScene) -> Built,
 }
 
+/// Tolerance of a system that is solved, in mean edge lengths.
+const SOLVED: f64 = 1e-6;
+
 const HALF_OF_FOLDS: &str = "half of the distance in sharp folds";
 const NO_LIMITS: &str = "edge limits";
 const BARRIER: &str = "edge limits, the contact distance where something presses";
@@ -52,7 +55,7 @@ pub const METHODS: &[Entry] = &[
     variant("paper", two_way),
     Entry { name: "paper, active rows", lacks: "", params: active_rows, build: two_way },
     lacking("log barrier", BARRIER, |p| log_barrier(p, BarrierParams::default())),
-    lacking("IPC", BARRIER, |p| ipc(p, BarrierParams::ipc())),
+    Entry { name: "IPC", lacks: BARRIER, params: near_alone, build: |p| ipc(p, BarrierParams::ipc()) },
     lacking("IPC, own range", "edge limits, the contact distance", |p| {
         let params = BarrierParams::ipc_with_own_range(&p);
         ipc(p, params)
@@ -81,13 +84,15 @@ pub const METHODS: &[Entry] = &[
     lacking("impact zones", NO_DISTANCE, |p| impact_zones(p, ZoneParams::default())),
     lacking("impact zones, Harmon", "edge limits, contact distance, contacts that open", |p| {
         let (solver, goal) = (ZoneSolver::LinearSystem, ZoneGoal::ZeroVelocity);
-        impact_zones(p, ZoneParams { solver, goal, ..ZoneParams::default() })
+        impact_zones(p, ZoneParams { solver, goal, tolerance: SOLVED, ..ZoneParams::default() })
     }),
     lacking("impact zones, Harmon, to delta", "edge limits, contact distance, contacts that open", |p| {
         impact_zones(p, ZoneParams { solver: ZoneSolver::LinearSystem, ..ZoneParams::default() })
     }),
     lacking("impact zones, Tang", NO_DISTANCE, |p| {
-        impact_zones(p, ZoneParams { solver: ZoneSolver::AugmentedLagrangian, ..ZoneParams::default() })
+        // XRTailor takes at most 100 steps.
+        let solver = ZoneSolver::AugmentedLagrangian;
+        impact_zones(p, ZoneParams { solver, max_sweeps: 100, ..ZoneParams::default() })
     }),
     // They keep 0.8 of the distance that the other methods keep. Zones as published keep none.
     lacking("impact zones, 0.8 delta", "edge limits, a fifth of the contact distance", |p| {
@@ -246,6 +251,13 @@ where
 fn face_normals() -> Params {
     let mut params = Params::paper();
     params.contact.form = ContactForm::Face;
+    params
+}
+
+/// `paper` with the pairs within the contact distance as candidates: a barrier that ends there needs no others.
+fn near_alone() -> Params {
+    let mut params = Params::paper();
+    params.contact.range = 1.0;
     params
 }
 

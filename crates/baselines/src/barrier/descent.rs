@@ -3,7 +3,8 @@
 //!
 //! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices. s is halved after a
 //! step that raised the energy and raised by a tenth after one that lowered it (the rule of Wang and Yang
-//! 2016, applied in each step). A line search is of no use, because vertices move by different fractions of
+//! 2016, applied in each step). While prescribed vertices move, the objective itself changes: values before and
+//! after a step cannot be compared, and s stays. A line search is of no use, because vertices move by different fractions of
 //! their way.
 
 use super::{BarrierParams, Derivatives, Objective, Scaling};
@@ -25,6 +26,8 @@ pub struct DescentStep {
     factor: f64,
     /// Energy at the last x [J].
     energy: f64,
+    /// Whether prescribed vertices were on their way at the last x.
+    led: bool,
     /// Largest |D^-1 dE/dx| of the last step, by blocks [m].
     newton_length: f64,
 }
@@ -63,18 +66,22 @@ impl BackwardStep for DescentStep {
         self.objective.begin(scene, state);
         self.factor = 1.0;
         self.energy = f64::INFINITY;
+        self.led = false;
         self.newton_length = f64::INFINITY;
     }
 
     fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let contacts = self.objective.contacts(scene, state);
         let energy = self.objective.value(scene, state, &state.x, &contacts);
-        self.factor = if energy > self.energy {
-            (0.5 * self.factor).max(MIN_FACTOR)
-        } else {
-            (1.1 * self.factor).min(1.0)
-        };
+        if !self.led {
+            self.factor = if energy > self.energy {
+                (0.5 * self.factor).max(MIN_FACTOR)
+            } else {
+                (1.1 * self.factor).min(1.0)
+            };
+        }
         self.energy = energy;
+        self.led = (0..state.x.len()).any(|v| !state.is_movable(v) && state.x[v] != state.target[v]);
         self.objective.derivatives(scene, state, &state.x, &contacts, &mut self.derivatives);
         self.newton_length = 0.0;
         for v in 0..state.x.len() {

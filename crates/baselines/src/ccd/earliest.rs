@@ -2,7 +2,7 @@
 //! Contact").
 
 use super::additive::AdditiveCcd;
-use super::pairs::clearance;
+use super::pairs::candidate_clearance;
 use super::swept::{PathTime, SweptSearch};
 use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_twoway::geometry::Vector;
@@ -44,7 +44,7 @@ pub(crate) fn earliest(
     let first = AtomicU64::new(1.0f64.to_bits());
     (0..state.contacts.pairs.len()).into_par_iter().with_min_len(CHUNK).for_each(|p| {
         let until = f64::from_bits(first.load(Ordering::Relaxed));
-        let time = clearance(ccd, scene, state, paths, p, until).time;
+        let time = candidate_clearance(ccd, scene, state, paths, p, until).time;
         first.fetch_min(time.to_bits(), Ordering::Relaxed);
     });
     f64::from_bits(first.into_inner())

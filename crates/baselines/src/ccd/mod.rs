@@ -13,6 +13,7 @@ mod swept;
 pub use additive::{AdditiveCcd, Clearance, ClosingSpeed};
 pub use earliest::EarliestImpact;
 pub(crate) use earliest::earliest;
+pub(crate) use pairs::clearance;
 pub use per_vertex::PerVertexImpact;
 pub(crate) use swept::PathTime;
 pub use swept::SweptSearch;

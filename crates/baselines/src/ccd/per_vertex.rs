@@ -8,7 +8,7 @@
 //! earliest impact.
 
 use super::additive::AdditiveCcd;
-use super::pairs::clearance;
+use super::pairs::candidate_clearance;
 use super::swept::{PathTime, SweptSearch};
 use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_twoway::geometry::Vector;
@@ -67,7 +67,7 @@ impl PerVertexImpact {
             if !vertices.iter().any(|&v| self.changed[v as usize]) {
                 return;
             }
-            let time = clearance(&self.ccd, scene, state, &self.paths, p, 1.0).time;
+            let time = candidate_clearance(&self.ccd, scene, state, &self.paths, p, 1.0).time;
             if time < 1.0 {
                 first.fetch_min(time.to_bits(), Ordering::Relaxed);
                 for v in vertices.iter().map(|&v| v as usize) {

@@ -8,7 +8,8 @@ use bowknot_twoway::{BackwardStep, CollisionScene, Residuals, ResolveState, Stat
 /// which finds it ineffective because contacts come and go): y^(l+1) <- y^(l-1) + omega (y^(l+1) - y^(l-1)),
 /// with omega_1 = 2/(2 - rho^2) and omega_(k+1) = 4/(4 - rho^2 omega_k) after `delay` plain steps.
 ///
-/// Multipliers and residuals are those of the inner step.
+/// Multipliers and residuals are those of the inner step. An inner step that starts from multipliers and y', as
+/// projected Jacobi here, does not read the accelerated y: it moves x alone.
 #[derive(Clone, Debug)]
 pub struct InterStepChebyshev<B> {
     inner: B,

@@ -8,7 +8,7 @@ use bowknot_twoway::{RowSolver, RowSystem};
 ///
 /// The paper damps all rows by one factor, small enough for convergence. Here each row has its own factor,
 /// from the number of rows that share its nodes (mass splitting, see [`bowknot_twoway::lcp::Jacobi`]). This
-/// converges for any rows without tuning, and no slower.
+/// converges for any rows without tuning.
 #[derive(Clone, Debug)]
 pub struct ProjectedJacobi {
     /// Sweeps per backward step. Default 1; up to 800 in Fig. 12.

@@ -14,10 +14,9 @@ const SHORTER: f64 = 0.7;
 /// Share of the promised decrease that a step must reach.
 const DECREASE: f64 = 0.5;
 /// A zone is done where its length is smaller, ..
-const LEAST_LENGTH: f64 = 1e-9;
+const LEAST_LENGTH: f64 = 1e-12;
 /// .. or where its function changes by less [m^2, in units of relative mass].
-const LEAST_CHANGE: f64 = 1e-16;
-
+const LEAST_CHANGE: f64 = 1e-10;
 /// The zones of a system, and their steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ZoneDescent {

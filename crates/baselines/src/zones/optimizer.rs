@@ -15,9 +15,9 @@ use std::time::Instant;
 /// new row. Zones are the sets of vertices that rows connect. No row connects two zones, so that solving all
 /// rows at once solves each zone.
 ///
-/// It ends with a y that the straight path from x reaches without an impact, or fails ([`Outcome::failed`])
-/// and leaves the positions unchanged. Prescribed vertices reach their keyframe, or the call fails. Edges
-/// have no limits.
+/// It ends with a y that the straight path from x reaches without an impact. Otherwise the positions stay as
+/// they are: the call has failed ([`Outcome::failed`]) if its rounds are used up, and is only not at its end
+/// if its time is. Prescribed vertices reach their keyframe, or nothing moves. Edges have no limits.
 #[derive(Debug)]
 pub struct ImpactZones {
     scene: CollisionScene,
@@ -34,6 +34,8 @@ pub(crate) struct Attempt {
     pub(crate) target: Vec<Point>,
     /// Whether the straight path to it is free of impacts.
     pub(crate) clear: bool,
+    /// Whether the time of the call ended before the rounds did.
+    pub(crate) out_of_time: bool,
 }
 
 impl ImpactZones {
@@ -65,6 +67,7 @@ impl ImpactZones {
         let mut y = free.clone();
         let mut paths = Vec::with_capacity(y.len());
         rows.clear();
+        search.begin();
         search.thickness = params.thickness;
         loop {
             paths.clear();
@@ -73,7 +76,7 @@ impl ImpactZones {
             let out_of_time = limits.max_seconds.is_some_and(|s| timer.elapsed().as_secs_f64() > s);
             if impacts.is_empty() || outcome.steps >= max_iterations || out_of_time {
                 let target = y.into_iter().map(Point::from).collect();
-                return Ok(Attempt { target, clear: impacts.is_empty() });
+                return Ok(Attempt { target, clear: impacts.is_empty(), out_of_time });
             }
             let backward = Instant::now();
             impacts.iter().for_each(|impact| rows.add(scene, impact, positions, &paths, params.goal));
@@ -81,7 +84,7 @@ impl ImpactZones {
                 // The rows are sound by construction: a refusal is a bug.
                 tracing::error!(%error, "impact zones refused their own rows");
                 let target = y.into_iter().map(Point::from).collect();
-                return Ok(Attempt { target, clear: false });
+                return Ok(Attempt { target, clear: false, out_of_time: false });
             }
             outcome.steps += 1;
             outcome.seconds.backward += backward.elapsed().as_secs_f64();
@@ -113,7 +116,7 @@ impl Method for ImpactZones {
         let mut outcome = Outcome::default();
         let attempt = self.optimize(positions, target, input, &mut outcome)?;
         outcome.converged = attempt.clear;
-        outcome.failed = !attempt.clear;
+        outcome.failed = !attempt.clear && !attempt.out_of_time;
         if attempt.clear {
             positions.copy_from_slice(&attempt.target);
         }

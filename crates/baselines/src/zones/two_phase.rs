@@ -21,7 +21,6 @@ pub struct TwoPhase<H> {
     name: String,
     soft: ImpactZones,
     hard: H,
-    fallbacks: usize,
 }
 
 impl<H: Method> TwoPhase<H> {
@@ -33,12 +32,7 @@ impl<H: Method> TwoPhase<H> {
     pub fn new(scene: CollisionScene, soft_rounds: usize, hard: H) -> Result<Self, Errors<ParamError>> {
         let params = ZoneParams { max_iterations: soft_rounds, ..ZoneParams::default() };
         let name = format!("two phases, hard: {}", hard.name());
-        Ok(Self { name, soft: ImpactZones::new(scene, params)?, hard, fallbacks: 0 })
-    }
-
-    /// Number of calls so far that needed the hard phase.
-    pub fn fallbacks(&self) -> usize {
-        self.fallbacks
+        Ok(Self { name, soft: ImpactZones::new(scene, params)?, hard })
     }
 }
 
@@ -60,7 +54,6 @@ impl<H: Method> Method for TwoPhase<H> {
             positions.copy_from_slice(&attempt.target);
             outcome.converged = true;
         } else {
-            self.fallbacks += 1;
             // Contradicting rows may have moved the target to infinity.
             let finite = attempt.target.iter().all(|y| y.iter().all(|c| c.is_finite()));
             let target = if finite { &attempt.target } else { target };

@@ -70,7 +70,8 @@ impl Figure for ImpactZones {
         ];
         let phases = [(2, SOFT_ROUNDS), (3, 1)];
         for method in METHODS {
-            settings.push(Setting::of(method)?);
+            // Long enough for all rounds: the question is whether they suffice.
+            settings.push(Setting::of(method)?.within(60.0));
         }
         let compared = on_scenes(bench, scenes, bench.size.pick(10, 3, 1), &settings, 1, Against::Residuals)?;
         let hard_phases = phases.map(|(setting, soft_rounds)| {

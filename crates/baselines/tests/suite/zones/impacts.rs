@@ -65,3 +65,35 @@ fn a_pair_that_comes_from_afar_to_its_contact_distance_does_not_count_as_meeting
     assert_eq!(impacts(0.01), 0);
     assert_eq!(impacts(-0.01), 1);
 }
+
+#[test]
+fn later_rounds_of_a_call_find_what_a_search_of_its_own_finds() {
+    let scene = Scene::two_sheets(4, 0.05);
+    let collision = scene.collision_scene(Params::fast());
+    let swapped = scene.swapped();
+    let mut kept = ImpactSearch::new(collision.model());
+    for thickness in [0.0, 0.8] {
+        kept.thickness = thickness;
+        kept.begin();
+        let mut paths: Vec<Vector> = scene.x.iter().zip(&swapped).map(|(x, y)| 0.4 * (y - x)).collect();
+        let mut state = 1u64;
+        let mut counts = Vec::new();
+        for _ in 0..12 {
+            let find = |search: &mut ImpactSearch| {
+                search.find(&collision, &scene.x, &paths, f64::INFINITY, |_| true, &mut Outcome::default())
+            };
+            let mut alone = ImpactSearch::new(collision.model());
+            alone.thickness = thickness;
+            let impacts = find(&mut kept);
+            assert_eq!(impacts, find(&mut alone));
+            counts.push(impacts.len());
+            // A few vertices get longer or shorter ways, back and forth; the others keep theirs.
+            for _ in 0..4 {
+                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                let v = (state >> 33) as usize % paths.len();
+                paths[v] *= [0.1, 0.5, 1.5, -0.3][(state >> 60) as usize % 4];
+            }
+        }
+        assert!(counts.iter().any(|&n| n != counts[0]) && counts.iter().all(|&n| n > 0), "{counts:?}");
+    }
+}
