@@ -25,7 +25,7 @@ OURS = "Bowknot"
 
 FULL = [Fall("ball", 32, 30, 1.0 / 60.0), Fall("needle", 32, 30, 1.0 / 60.0)]
 QUICK = [Fall("needle", 20, 20, 1.0 / 60.0)]
-SETTINGS = [vbd.BARE, vbd.PLAIN, vbd.FINE, vbd.CUT, vbd.WIDE, vbd.ALL]
+SETTINGS = [vbd.BARE, vbd.PLAIN, vbd.TWO, vbd.FOUR, vbd.FINE, vbd.CUT, vbd.WIDE, vbd.ALL]
 
 
 def run_bowknot(scene, threads, folder):

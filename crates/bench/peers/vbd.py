@@ -38,6 +38,8 @@ class Settings:
 BARE = Settings("Newton, constructor's defaults: no self-contact", 10, 10, self_contact=False)
 # The switches of its cloth examples.
 PLAIN = Settings("Newton, 1 step of 10 iterations", 1, 10)
+TWO = Settings("Newton, 2 steps of 10 iterations", 2, 10)
+FOUR = Settings("Newton, 4 steps of 10 iterations", 4, 10)
 FINE = Settings("Newton, 10 steps of 4", 10, 4)
 CUT = Settings("Newton, 10 steps of 4, cut at obstacles", 10, 4, cut_at_obstacle=True)
 WIDE = replace(CUT, name="Newton, 10 steps of 4, cut, pairs to 12 mm", gap=0.01, buffer=512)
