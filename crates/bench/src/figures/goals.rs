@@ -4,8 +4,10 @@ use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report};
 use crate::process::{Case, ProcessRun, TimeStep};
 use crate::table::{Entry, Table, geometric_mean, largest, mean, short};
-use anyhow::Result;
+use anyhow::{Context, Result};
 use bowknot::simulator::StepSeconds;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::Path;
 
 pub struct Goals;
 
@@ -167,7 +169,8 @@ impl Runs<'_> {
     /// None if there is no program to compare with, or no time is left.
     fn before(&self, case: &Case) -> Result<Option<ProcessRun>> {
         let Some(program) = &self.bench.before else { return Ok(None) };
-        self.kept(&format!("goals/before-{}", case.key()), || case.run_with(program, self.bench.out()))
+        let key = format!("goals/before-{:016x}-{}", build_of(program)?, case.key());
+        self.kept(&key, || case.run_with(program, self.bench.out()))
     }
 
     fn kept(&self, key: &str, run: impl FnOnce() -> Result<ProcessRun>) -> Result<Option<ProcessRun>> {
@@ -177,6 +180,14 @@ impl Runs<'_> {
             None => Ok(None),
         }
     }
+}
+
+/// A number that tells the builds of a program apart, by its path, size and time of writing.
+fn build_of(program: &Path) -> Result<u64> {
+    let file = std::fs::metadata(program).with_context(|| format!("cannot read {}", program.display()))?;
+    let mut hasher = DefaultHasher::new();
+    (program, file.len(), file.modified()?).hash(&mut hasher);
+    Ok(hasher.finish())
 }
 
 fn collision(seconds: &StepSeconds) -> f64 {
