@@ -30,8 +30,8 @@ pub struct Entry {
     build: fn(CollisionScene) -> Built,
 }
 
-/// Tolerance of a system that is solved, in mean edge lengths.
-const SOLVED: f64 = 1e-6;
+/// Tolerance of a system that is solved, in mean edge lengths, and the most iterations that may take.
+const SOLVED: (f64, u32) = (1e-6, 5000);
 
 const HALF_OF_FOLDS: &str = "half of the distance in sharp folds";
 const NO_LIMITS: &str = "edge limits";
@@ -54,7 +54,12 @@ pub const METHODS: &[Entry] = &[
     Entry { name: "quick", lacks: HALF_OF_FOLDS, params: Params::quick, build: two_way },
     variant("paper", two_way),
     Entry { name: "paper, active rows", lacks: "", params: active_rows, build: two_way },
-    lacking("log barrier", BARRIER, |p| log_barrier(p, BarrierParams::default())),
+    Entry {
+        name: "log barrier",
+        lacks: BARRIER,
+        params: near_alone,
+        build: |p| log_barrier(p, BarrierParams::default()),
+    },
     Entry { name: "IPC", lacks: BARRIER, params: near_alone, build: |p| ipc(p, BarrierParams::ipc()) },
     lacking("IPC, own range", "edge limits, the contact distance", |p| {
         let params = BarrierParams::ipc_with_own_range(&p);
@@ -84,7 +89,8 @@ pub const METHODS: &[Entry] = &[
     lacking("impact zones", NO_DISTANCE, |p| impact_zones(p, ZoneParams::default())),
     lacking("impact zones, Harmon", "edge limits, contact distance, contacts that open", |p| {
         let (solver, goal) = (ZoneSolver::LinearSystem, ZoneGoal::ZeroVelocity);
-        impact_zones(p, ZoneParams { solver, goal, tolerance: SOLVED, ..ZoneParams::default() })
+        let (tolerance, max_sweeps) = SOLVED;
+        impact_zones(p, ZoneParams { solver, goal, tolerance, max_sweeps, ..ZoneParams::default() })
     }),
     lacking("impact zones, Harmon, to delta", "edge limits, contact distance, contacts that open", |p| {
         impact_zones(p, ZoneParams { solver: ZoneSolver::LinearSystem, ..ZoneParams::default() })

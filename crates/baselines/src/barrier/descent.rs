@@ -81,7 +81,9 @@ impl BackwardStep for DescentStep {
             };
         }
         self.energy = energy;
-        self.led = (0..state.x.len()).any(|v| !state.is_movable(v) && state.x[v] != state.target[v]);
+        let arrival = self.objective.params().tolerance * scene.lengths().edge;
+        let is_led = |v: usize| !state.is_movable(v) && (state.target[v] - state.x[v]).norm() > arrival;
+        self.led = (0..state.x.len()).any(is_led);
         self.objective.derivatives(scene, state, &state.x, &contacts, &mut self.derivatives);
         self.newton_length = 0.0;
         for v in 0..state.x.len() {

@@ -2,7 +2,7 @@
 //!
 //! A zone is a set of vertices that rows connect. Its first length is a thousandth of its number of vertices.
 //! A step tries the last length over 0.7, and multiplies it by 0.7 until the function falls by half of what
-//! its gradient promises. The constants are those of XRTailor, an open implementation of the method.
+//! its gradient promises, or changes by next to nothing. The constants are those of XRTailor, an open implementation of the method.
 
 use bowknot_twoway::geometry::{UnionFind, Vector};
 use bowknot_twoway::lcp::LcpProblem;
@@ -13,10 +13,11 @@ const FIRST: f64 = 1e-3;
 const SHORTER: f64 = 0.7;
 /// Share of the promised decrease that a step must reach.
 const DECREASE: f64 = 0.5;
-/// A zone is done where its length is smaller, ..
+/// A zone is done where its length is smaller.
 const LEAST_LENGTH: f64 = 1e-12;
-/// .. or where its function changes by less [m^2, in units of relative mass].
+/// A step is taken as it is where the function changes by less [m^2, in units of relative mass].
 const LEAST_CHANGE: f64 = 1e-10;
+
 /// The zones of a system, and their steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ZoneDescent {
@@ -157,9 +158,10 @@ impl ZoneDescent {
             if zone.state != State::Searching {
                 continue;
             }
-            if zone.length < LEAST_LENGTH || (zone.before - after).abs() < LEAST_CHANGE {
+            let falls = after < zone.before - DECREASE * zone.length * zone.slope;
+            if zone.length < LEAST_LENGTH {
                 zone.state = State::Done;
-            } else if after < zone.before - DECREASE * zone.length * zone.slope {
+            } else if falls || (zone.before - after).abs() < LEAST_CHANGE {
                 zone.state = State::Found;
             }
         }

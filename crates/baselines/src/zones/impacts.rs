@@ -44,10 +44,11 @@ impl Impact {
 /// Finds impacts: candidates by swept boxes, then additive continuous detection. A pair that it does not find
 /// keeps a tenth of its contact distance on the whole way, or half of its gap at the start.
 ///
-/// From one round of a call to the next only the paths of some vertices change. What detection says of a pair
+/// From one round of a method to the next only the paths of some vertices change. What detection says of a pair
 /// depends on x, which stays, and on the paths of its own vertices. So it is repeated for pairs with a vertex
-/// whose path has changed, and for those that met in the last round; every other pair has been found to stay
-/// apart on the very paths that it has now (detection of I-Cloth is incremental too).
+/// whose path has changed, and for those that met or were refused in the last round; every other pair has been
+/// found to stay apart on the very paths that it has now (detection of I-Cloth is incremental too). The candidates
+/// are searched anew in each round.
 #[derive(Debug)]
 pub struct ImpactSearch {
     /// A pair that does not meet, but ends at less than this share of its contact distance, is found too. 0,
@@ -58,12 +59,29 @@ pub struct ImpactSearch {
     pairs: PairList,
     separations: Vec<Separation>,
     radii: Vec<f64>,
-    /// The paths of the last round; none before the first round of a call.
-    last_paths: Vec<Vector>,
+    last: Round,
     /// Whether the path of a vertex differs from that of the last round.
     changed: Vec<bool>,
-    /// The pairs that met in the last round, by kind and elements.
-    met: HashSet<(PairKind, [u32; 2])>,
+    /// The pairs that met or were refused in the last round.
+    unsettled: HashSet<PairKey>,
+}
+
+/// What detection depends on, beside the model and `accept`.
+#[derive(Debug, Default, PartialEq)]
+struct Round {
+    x: Vec<Point>,
+    paths: Vec<Vector>,
+    growth: f64,
+    thickness: f64,
+}
+
+/// Kind and elements of a pair.
+type PairKey = (PairKind, [u32; 2]);
+
+/// What a round finds out of a pair that does not certainly stay apart.
+enum Found {
+    Impact(Impact),
+    Refused(PairKey),
 }
 
 impl ImpactSearch {
@@ -76,36 +94,33 @@ impl ImpactSearch {
             pairs: PairList::default(),
             separations: Vec::new(),
             radii: Vec::new(),
-            last_paths: Vec::new(),
+            last: Round::default(),
             changed: Vec::new(),
-            met: HashSet::new(),
+            unsettled: HashSet::new(),
         }
     }
 
-    /// Begins a call: the next round tests all pairs.
-    pub fn begin(&mut self) {
-        self.last_paths.clear();
-        self.met.clear();
-    }
-
-    /// Finds out whose paths differ from those of the last round.
-    fn compare(&mut self, paths: &[Vector]) {
+    /// Finds out whose paths differ from those of the last round; if anything else differs, all count as changed.
+    fn compare(&mut self, x: &[Point], paths: &[Vector], growth: f64) {
+        let last = &mut self.last;
+        let is_another = last.x != x || last.growth != growth || last.thickness != self.thickness;
         self.changed.clear();
-        if self.last_paths.is_empty() {
+        if is_another {
             self.changed.resize(paths.len(), true);
+            last.x.clear();
+            last.x.extend_from_slice(x);
+            (last.growth, last.thickness) = (growth, self.thickness);
         } else {
-            self.changed.extend(paths.iter().zip(&self.last_paths).map(|(now, last)| now != last));
+            self.changed.extend(paths.iter().zip(&last.paths).map(|(now, before)| now != before));
         }
-        self.last_paths.clear();
-        self.last_paths.extend_from_slice(paths);
+        last.paths.clear();
+        last.paths.extend_from_slice(paths);
     }
 
     /// The impacts of vertices that move from `x` along `paths` [m] with a common path time, in the order of
     /// pair lists. Pairs that `accept` refuses are left out. `growth` bounds the growth of a gap that a row
-    /// asks for [m]. Adds a search and its seconds to `outcome`; detection counts as evaluation.
-    ///
-    /// Between two calls of [`ImpactSearch::begin`], the scene, `x`, `growth` and the thickness must be the
-    /// same, and a pair that `accept` refuses must be refused in all later rounds too.
+    /// asks for [m]. Adds a search and its seconds to `outcome`; detection counts as evaluation. `scene` is the same
+    /// in all calls.
     pub fn find(
         &mut self,
         scene: &CollisionScene,
@@ -116,8 +131,8 @@ impl ImpactSearch {
         outcome: &mut Outcome,
     ) -> Vec<Impact> {
         let timer = Instant::now();
-        self.compare(paths);
-        let Self { thickness, search, pairs, separations, radii, ccd, changed, met, .. } = self;
+        self.compare(x, paths, growth);
+        let Self { thickness, search, pairs, separations, radii, ccd, changed, unsettled, .. } = self;
         let thickness = *thickness;
         radii.clear();
         radii.resize(x.len(), SEPARATION_SHARE.max(thickness) * scene.spacing().largest_delta());
@@ -126,16 +141,17 @@ impl ImpactSearch {
         outcome.seconds.search += timer.elapsed().as_secs_f64();
 
         let timer = Instant::now();
-        let mut impacts: Vec<Impact> = Vec::new();
+        let mut found = Vec::new();
         for kind in PairKind::ALL {
             let range = pairs.range(kind);
-            let found = pairs.pairs()[range.clone()]
+            let of_kind = pairs.pairs()[range.clone()]
                 .par_iter()
                 .zip(&separations[range])
                 .with_min_len(CHUNK)
                 .filter_map(|(&pair, separation)| {
                     let moved = pair.vertices[..kind.vertex_count()].iter().any(|&v| changed[v as usize]);
-                    if !moved && !met.contains(&(kind, pair.elements)) {
+                    let key = (kind, pair.elements);
+                    if !moved && !unsettled.contains(&key) {
                         return None;
                     }
                     let delta = scene.spacing().of(scene.model(), kind, &pair).delta;
@@ -144,19 +160,29 @@ impl ImpactSearch {
                     let (delta, _) = rule.of(scene.model(), kind, &pair, scene.rest(), gap);
                     let impact = Impact { kind, pair, time: 0.0, delta };
                     if !accept(&impact) {
-                        return None;
+                        return Some(Found::Refused(key));
                     }
                     let min_separation = (SEPARATION_SHARE * delta).min(GAP_SHARE * gap);
                     let slackness = (SLACK_SHARE * delta / gap).min(ccd.slackness);
                     let ccd = AdditiveCcd { slackness, ..*ccd };
                     let time = clearance(&ccd, scene, kind, &pair, x, paths, min_separation, 1.0).time;
                     let near = || end_distance(scene, kind, &pair, x, paths) < thickness * delta;
-                    (time < 1.0 || (thickness > 0.0 && near())).then_some(Impact { time, ..impact })
+                    (time < 1.0 || (thickness > 0.0 && near()))
+                        .then_some(Found::Impact(Impact { time, ..impact }))
                 });
-            impacts.par_extend(found);
+            found.par_extend(of_kind);
         }
-        met.clear();
-        met.extend(impacts.iter().map(|impact| (impact.kind, impact.pair.elements)));
+        unsettled.clear();
+        let mut impacts = Vec::new();
+        for pair in found {
+            match pair {
+                Found::Impact(impact) => {
+                    unsettled.insert((impact.kind, impact.pair.elements));
+                    impacts.push(impact);
+                }
+                Found::Refused(key) => _ = unsettled.insert(key),
+            }
+        }
         outcome.seconds.evaluate += timer.elapsed().as_secs_f64();
         impacts
     }

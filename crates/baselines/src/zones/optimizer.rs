@@ -67,14 +67,15 @@ impl ImpactZones {
         let mut y = free.clone();
         let mut paths = Vec::with_capacity(y.len());
         rows.clear();
-        search.begin();
         search.thickness = params.thickness;
         loop {
             paths.clear();
             paths.extend(y.iter().zip(positions).map(|(y, x)| y - x.coords));
             let impacts: Vec<Impact> = search.find(scene, positions, &paths, growth, |_| true, outcome);
-            let out_of_time = limits.max_seconds.is_some_and(|s| timer.elapsed().as_secs_f64() > s);
-            if impacts.is_empty() || outcome.steps >= max_iterations || out_of_time {
+            let is_last = outcome.steps >= max_iterations;
+            let out_of_time =
+                !is_last && limits.max_seconds.is_some_and(|s| timer.elapsed().as_secs_f64() > s);
+            if impacts.is_empty() || is_last || out_of_time {
                 let target = y.into_iter().map(Point::from).collect();
                 return Ok(Attempt { target, clear: impacts.is_empty(), out_of_time });
             }

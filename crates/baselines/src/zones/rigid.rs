@@ -51,7 +51,6 @@ impl Method for RigidZones {
         let wanted: Vec<Vector> = target.iter().zip(&*positions).map(|(y, x)| y - x).collect();
         let mut paths = wanted.clone();
         let mut zones = Zones::new(scene, &call);
-        search.begin();
         loop {
             let accept = |impact: &Impact| !zones.keep_apart(impact);
             let impacts = search.find(scene, positions, &paths, growth, accept, &mut outcome);

@@ -38,7 +38,8 @@ impl Figure for ImpactZones {
          published, and to the contact distance), by the augmented Lagrangian of Tang et al. 2018 as \
          published, and by Gauss-Seidel to 0.8 of the distance that the other methods keep. *-1000* are the \
          knots at 1/1000 s. How often the hard phase of Wu et al. 2020 is needed is counted, after five \
-         soft rounds and after one. A solve that fails leaves x unchanged; its error is that of the start."
+         soft rounds and after one. Zones have 60 s for their rounds, all else 4 s as in other figures. One that \
+         fails or runs out of time leaves x unchanged; its error is that of the start."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {

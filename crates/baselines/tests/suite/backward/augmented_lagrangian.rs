@@ -23,9 +23,10 @@ fn it_comes_to_the_corner_of_two_constraints() {
     let expected = Solution { y: vec![Vector::new(2.0, -2.0, 0.0)], lambda: vec![0.0, 2f64.sqrt()] };
     descend(&System::corner([1.0, -3.0]), AugmentedLagrangian::by_vertices(4000))
         .assert_near(&expected, 1e-9);
-    // As published: it ends where L = lambda^2/(2 rho), but for a constant, changes by less than 1e-10.
+    // As published: steps are taken as they are once L, which grows with lambda^2/(2 rho), changes by less than
+    // 1e-10.
     let off = (2.0 * 1000.0 * 1e-10f64).sqrt();
-    descend(&System::corner([1.0, -3.0]), AugmentedLagrangian::new(4000)).assert_near(&expected, 1.1 * off);
+    descend(&System::corner([1.0, -3.0]), AugmentedLagrangian::new(4000)).assert_near(&expected, off);
 }
 
 #[test]
@@ -100,10 +101,9 @@ fn as_published_each_zone_has_a_step_length_of_its_own_and_the_function_falls() 
     let mut solver = AugmentedLagrangian::new(3000);
     solver.penalty = 100.0;
     solver.descend(&problem, &free, &mut state);
-    // The weak row's force grows by rho 0.03 |y| per update, until L changes by less than 1e-10.
-    assert!(y[0].norm() < 3e-4 && y[1].norm() < 1e-6, "{y:?}");
+    assert!(y[0].norm() < 1e-4 && y[1].norm() < 1e-4, "{y:?}");
     // What no row holds is at its target.
     assert_eq!(y[2], free[2]);
     // m (y - y') = J^T lambda.
-    assert!((lambda[0] - 1.0 / 0.03).abs() < 0.01 && (lambda[1] - 1.0).abs() < 0.01, "{lambda:?}");
+    assert!((lambda[0] - 1.0 / 0.03).abs() < 0.01 && (lambda[1] - 1.0).abs() < 1e-3, "{lambda:?}");
 }
