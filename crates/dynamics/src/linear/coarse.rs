@@ -159,27 +159,15 @@ impl Coarse {
 
     /// The graph of the mesh and the springs.
     fn join(&self, springs: &LinearSprings, x: &[Vector]) -> Graph {
-        // Thousands of springs join the same two aggregates, mostly one after the other.
-        let mut joined: Vec<[u32; 2]> = Vec::new();
+        let mut pairs: Vec<[u32; 2]> = self.mesh.pairs().collect();
         springs.for_each_spring(|nodes| {
-            let mut moving = [0; 4];
-            let mut count = 0;
-            for node in nodes.iter().map(|n| *n as usize).filter(|n| self.arms[*n].free > 0.0) {
-                let aggregate = self.aggregate_of[node];
-                if !moving[..count].contains(&aggregate) {
-                    moving[count] = aggregate;
-                    count += 1;
-                }
-            }
-            for &a in &moving[..count] {
-                let others = moving[..count].iter().filter(|b| a < **b).map(|b| [a, *b]);
-                joined.extend(others.filter(|[a, b]| self.mesh.around(*a as usize).binary_search(b).is_err()));
+            let moving = || nodes.iter().filter(|n| self.arms[**n as usize].free > 0.0);
+            let aggregate = |n: &u32| self.aggregate_of[*n as usize];
+            for a in moving().map(aggregate) {
+                pairs.extend(moving().map(aggregate).filter(|b| *b != a).map(|b| [a, b]));
             }
         });
-        joined.sort_unstable();
-        joined.dedup();
-        let both = joined.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]);
-        Graph::new(self.mesh.pairs().chain(both).collect(), &centers(&self.aggregates, x))
+        Graph::new(pairs, &centers(&self.aggregates, x))
     }
 
     fn place_arms(&mut self, system: &System<'_>, x: &[Vector]) {
