@@ -17,6 +17,9 @@ const GAP_SHARE: f64 = 0.5;
 /// Detection may stop early by this share of the contact distance: pairs that pass each other at twice the
 /// distance that they must keep do not count as meeting, however far apart they started.
 const SLACK_SHARE: f64 = 0.1;
+/// The same with a thickness. Rows of pairs that pass each other near then save rounds: what passes near often ends
+/// near, once other rows act.
+const SLACK_SHARE_WITH_THICKNESS: f64 = 0.5;
 /// Smallest number of pairs of a parallel task.
 const CHUNK: usize = 256;
 
@@ -141,6 +144,7 @@ impl ImpactSearch {
         outcome.seconds.search += timer.elapsed().as_secs_f64();
 
         let timer = Instant::now();
+        let slack_share = if thickness > 0.0 { SLACK_SHARE_WITH_THICKNESS } else { SLACK_SHARE };
         let mut found = Vec::new();
         for kind in PairKind::ALL {
             let range = pairs.range(kind);
@@ -163,7 +167,7 @@ impl ImpactSearch {
                         return Some(Found::Refused(key));
                     }
                     let min_separation = (SEPARATION_SHARE * delta).min(GAP_SHARE * gap);
-                    let slackness = (SLACK_SHARE * delta / gap).min(ccd.slackness);
+                    let slackness = (slack_share * delta / gap).min(ccd.slackness);
                     let ccd = AdditiveCcd { slackness, ..*ccd };
                     let time = clearance(&ccd, scene, kind, &pair, x, paths, min_separation, 1.0).time;
                     let near = || end_distance(scene, kind, &pair, x, paths) < thickness * delta;
