@@ -13,7 +13,8 @@ impl Simulator {
     ///
     /// # Errors
     /// A target that is not finite, with its body; coordinates too large for the minimum separation. The
-    /// simulator is then as it was before the step.
+    /// simulator is then as it was before the step, unless a device fails while bodies fall asleep or obstacles come
+    /// and go at the end of it: then the step is done, and [`Self::time`] tells it.
     pub fn step(&mut self) -> Result<StepStatistics, SimulationError> {
         // From outside of the thread pool each of the parallel loops would put this thread to sleep and wake
         // it again.
@@ -25,7 +26,7 @@ impl Simulator {
     ///
     /// # Errors
     /// As [`Self::step`]; [`SimulationError::Interrupted`] if the observer stopped it. The simulator is
-    /// then as it was before the step.
+    /// then as it was before the step, as said there.
     pub fn step_observed(
         &mut self,
         observer: &mut dyn SimulationObserver,

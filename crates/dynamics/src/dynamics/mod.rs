@@ -259,18 +259,6 @@ impl Dynamics {
         self.step.as_ref().map_or(&[], Step::from)
     }
 
-    /// Positions where inertia alone leads from the start of the step [m], one entry per vertex. Obstacles
-    /// stay where they are; without a step that was begun the list is empty.
-    pub fn inertial_positions(&self) -> Vec<Point> {
-        let Some(step) = &self.step else { return Vec::new() };
-        let positions = step.positions.par_iter().zip(&self.model.vertex_node).with_min_len(MIN_NODES);
-        let inertial = |(x, &node): (&Point, &u32)| match node {
-            NO_NODE => *x,
-            _ => Point::from(step.inertial[node as usize]),
-        };
-        positions.map(inertial).collect()
-    }
-
     /// The residual of the time step at `x` [m]. Contact forces are those of the springs at `x`. Only forces
     /// on vertices that are free and `counted` enter; leave out vertices on which unknown forces act. All
     /// slices have one entry per vertex. If there are springs, the next target begins as if they had just
