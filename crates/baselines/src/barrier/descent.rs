@@ -3,9 +3,9 @@
 //!
 //! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices. s is halved after a
 //! step that raised the energy and raised by a tenth after one that lowered it (the rule of Wang and Yang
-//! 2016, applied in each step). While prescribed vertices move, the objective itself changes: values before and
-//! after a step cannot be compared, and s stays. A line search is of no use, because vertices move by different fractions of
-//! their way.
+//! 2016, applied in each step). While prescribed vertices move, the objective itself changes: values before
+//! and after a step cannot be compared, and s stays. A line search is of no use, because vertices move by
+//! different fractions of their way.
 
 use super::{BarrierParams, Derivatives, Objective, Scaling};
 use bowknot_errors::{Errors, ParamError};
